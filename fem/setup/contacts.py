@@ -74,8 +74,11 @@ class Resolution:
 
 
 SMALL_STRAIN = Resolution(edge=1.0 / 200.0, under=1.0 / 3.0)
-SPHERE = Resolution(edge=1.0 / 200.0, under=1.0 / 20.0, gather=(0.0,), growth=0.2)
-"""A sphere: fine wherever the border of the touch may be, since the force jumps as nodes come into touch one by one."""
+SPHERE = Resolution(edge=1.0 / 400.0, under=1.0 / 20.0, gather=(0.0,), growth=0.1)
+"""A sphere: fine wherever the border of the touch may be, since the force jumps as nodes come into touch one by one.
+
+Round a smooth curve over depth it leaves 0.06 % (rms) from a hundredth of the radius on; a growth of 0.2 left 0.25 %.
+"""
 SLIDING_PLATE = Resolution(edge=1.0 / 20.0, under=1.0 / 6.0)  # no edge is stuck
 
 

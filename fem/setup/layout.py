@@ -40,11 +40,14 @@ def lay_out(problem: Problem) -> Mesh:
     return _layout(problem).mesh()
 
 
+def tool_fan(problem: Problem) -> Fan | None:
+    """The fan of elements round the tool's edge; None without one."""
+    return _layout(problem).tool_fan if problem.geometry == "axisymmetric" else None
+
+
 def holds_edge(problem: Problem) -> bool:
     """Whether a fan of elements round the tool's edge holds the square root of the distance from it."""
-    if problem.geometry != "axisymmetric":
-        return False
-    fan = _layout(problem).tool_fan
+    fan = tool_fan(problem)
     return fan is not None and fan.square_root
 
 
