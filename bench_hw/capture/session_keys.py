@@ -94,6 +94,7 @@ class TrialKeys(StrictModel):
     markers: Name | None = None
     film: Name | None = None
     sheet: Name | None = None
+    height: Name | None = None
     import_: Annotated[dict[str, Any] | None, Field(alias="import")] = None
 
 

@@ -135,7 +135,7 @@ def closed_loop(made: BlindCase, session: Path, most: int) -> LoopAnswer:
 
     def proposed(found: Findings, allowed: Allowed) -> NextExperiment | None:
         grown = load_session(folder)
-        return propose(found, fem_or_wave_table(grown, ()), grown.specimen, allowed)
+        return propose(found, fem_or_wave_table(grown, ()), allowed)
 
     loop = Loop(HiddenBench(made, folder), most, decide, proposed)
     out.answers.append(loop.run().discovery)

@@ -170,7 +170,7 @@ def _answered(
     stopped: TissuebenchError | None = None
     if request.bench is None:
         found = _found(session, request, own, listener, store)
-        proposal = propose(found, fem_or_wave_table(session, ()), session.specimen, workers=DEFAULT.workers)
+        proposal = propose(found, fem_or_wave_table(session, ()), workers=DEFAULT.workers)
     else:
         loop = _looped(request, own, listener, store)
         found, grown = loop.run(), loop.bench.folder
@@ -249,7 +249,7 @@ def _looped(request: DiscoverRequest, own: tuple[Effect, ...], listener: Listene
 
     def proposed(found: Findings, allowed: Allowed) -> NextExperiment | None:
         session, _ = _loaded(request, folder, listener)
-        return propose(found, fem_or_wave_table(session, ()), session.specimen, allowed, DEFAULT.workers)
+        return propose(found, fem_or_wave_table(session, ()), allowed, DEFAULT.workers)
 
     return Loop(bench, request.budget, decide, proposed)
 

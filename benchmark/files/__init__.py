@@ -8,10 +8,10 @@ from benchmark.files.loading import load_scenario, load_tissue, scenario_from_ta
 from benchmark.files.scenario import Scenario, scenario_notes
 from benchmark.files.sessions.description import Camera
 from benchmark.files.sessions.session_loading import load_session
-from benchmark.files.sessions.trials import Session, Trial
+from benchmark.files.sessions.trials import Session, Setup, Trial
 from benchmark.files.shipped import Entry, shipped_scenarios, shipped_tissues
 from benchmark.files.sources import Source
-from benchmark.files.tissue import Layer, Tissue, scaled_tissue
+from benchmark.files.tissue import Layer, Tissue, scaled_tissue, stretched_tissue
 from benchmark.files.tool import Support, Tool
 
 __all__ = [
@@ -22,6 +22,7 @@ __all__ = [
     "LoadHistory",
     "Scenario",
     "Session",
+    "Setup",
     "Source",
     "Support",
     "Tissue",
@@ -35,5 +36,6 @@ __all__ = [
     "scenario_notes",
     "shipped_scenarios",
     "shipped_tissues",
+    "stretched_tissue",
     "tissue_from_table",
 ]

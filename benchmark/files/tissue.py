@@ -337,6 +337,15 @@ def scaled_tissue(tissue: Tissue, factor: float, name: str) -> Tissue:
     return tissue.model_copy(update={"name": name, "layers": layers})
 
 
+def stretched_tissue(tissue: Tissue, height: float) -> Tissue:
+    """Return the tissue as thick as `height` (m), each layer keeping its share of it; an endless one as it is."""
+    if math.isinf(tissue.thickness) or height == tissue.thickness:
+        return tissue
+    share = height / tissue.thickness
+    layers = tuple(layer.model_copy(update={"thickness": share * layer.thickness}) for layer in tissue.layers)
+    return tissue.model_copy(update={"layers": layers})
+
+
 def scaled_layer(layer: Layer, factor: float) -> Layer:
     """Return the layer with every modulus times `factor`: its own, its law's and its fibres'."""
     changes: dict[str, object] = {"youngs_modulus": factor * layer.youngs_modulus}

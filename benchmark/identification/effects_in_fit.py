@@ -145,15 +145,15 @@ def _share(session: Session, trial: TrialData, fit: SessionFit, effects: Sequenc
 def trial_context(session: Session, trial: TrialData, depth: Array) -> TrialContext:
     """What effects may know of a trial that is pressed to a depth (n,) below contact, m."""
     measured = next(each for each in session.trials if (each.condition, each.name) == trial.key)
-    thickness, support = session.specimen.thickness, measured.support
+    tissue, tool, support = session.setup(measured)
     return TrialContext(
-        tool_radius=measured.tool.radius,
-        thickness=thickness if np.isfinite(thickness) else 0.05,
+        tool_radius=tool.radius,
+        thickness=tissue.thickness if np.isfinite(tissue.thickness) else 0.05,
         peak_depth=float(depth.max()),
         peak_force=float(np.ptp(trial.force)),
         duration=float(np.ptp(trial.time)),
         hole_radius=open_radius(support),
-        layers=specimen_layers(session.specimen.layers),
-        contact=measured.tool.contact,
-        edge_radius=measured.tool.edge_radius or 0.0,
+        layers=specimen_layers(tissue.layers),
+        contact=tool.contact,
+        edge_radius=tool.edge_radius or 0.0,
     )

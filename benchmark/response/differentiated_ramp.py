@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
 from benchmark.errors import InputError
-from benchmark.files import Scenario, Session, Support, Tissue, Tool
+from benchmark.files import Scenario, Session, Setup, Support, Tissue, Tool
 from benchmark.models import Drive, RunFailure, UncoveredError, prepare
 from benchmark.models.model_result import LowerFace
 from benchmark.response.force_curve import Array
@@ -39,8 +39,6 @@ below 1e-6 of a first derivative up to a Poisson ratio of 0.499."""
 
 PHYSICS = "physics."
 """Begin of the keys of what a session states of physical effects."""
-
-Setup: TypeAlias = tuple[Tissue, Tool, Support]
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,7 +170,7 @@ def elastic_ramp(session: Session, tissue: Tissue, tool: Tool, support: Support,
 def _elastic(session: Session, setup: Setup) -> Scenario:
     tissue, tool, support = setup
     layers = tuple(one.model_copy(update={"relaxation": ()}) for one in tissue.layers)
-    return setup_scenario(session, tissue.model_copy(update={"layers": layers}), (tool, support))
+    return setup_scenario(session, (tissue.model_copy(update={"layers": layers}), tool, support))
 
 
 def _direct(

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from benchmark.errors import InputError, TissuebenchError
-from benchmark.files import Session, Support, Tissue, Tool
+from benchmark.files import Session, Setup, Support, Tissue, Tool
 from benchmark.response.differentiated_ramp import (
     DifferentiatedRamp,
     RampDerivative,
@@ -70,9 +70,7 @@ def fem_table(session: Session, keys: Sequence[str] = (RADIUS,)) -> TableOf:
     return table
 
 
-def _fem_table(
-    session: Session, setup: tuple[Tissue, Tool, Support], depth: float, keys: Sequence[str]
-) -> ElasticTable:
+def _fem_table(session: Session, setup: Setup, depth: float, keys: Sequence[str]) -> ElasticTable:
     """The table of one set-up.
 
     Raises
@@ -103,7 +101,7 @@ def _fem_table(
     return _noted(_with_force(_wave(*setup, depth, keys), curve.depth, curve.force), note)
 
 
-def _has(setup: tuple[Tissue, Tool, Support], key: str) -> bool:
+def _has(setup: Setup, key: str) -> bool:
     """Whether a set-up has a parameter."""
     try:
         changed_setup(*setup, key, 0.0)
@@ -112,9 +110,7 @@ def _has(setup: tuple[Tissue, Tool, Support], key: str) -> bool:
     return True
 
 
-def with_choices(
-    session: Session, setup: tuple[Tissue, Tool, Support], table: ElasticTable, keys: Sequence[str]
-) -> ElasticTable:
+def with_choices(session: Session, setup: Setup, table: ElasticTable, keys: Sequence[str]) -> ElasticTable:
     """The table with the way to each other choice, where the solver follows that as deep."""
     by = dict(table.by)
     for key in keys:
@@ -127,7 +123,7 @@ def with_choices(
     return replace(table, by=by)
 
 
-def _with_pretension(session: Session, setup: tuple[Tissue, Tool, Support], table: ElasticTable) -> ElasticTable:
+def _with_pretension(session: Session, setup: Setup, table: ElasticTable) -> ElasticTable:
     """The table of a sheet with what a pascal of tension before the press adds, where the solver follows that as deep.
 
     By the difference of two presses, the other under a tension that makes about `TENSE` of the deepest force; force and

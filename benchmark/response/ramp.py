@@ -6,16 +6,13 @@ An elastic force depends on the depth alone, so a ramp serves every history of d
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
 
-from benchmark.files import Load, Scenario, Session, Support, Tissue, Tool
+from benchmark.files import Load, Scenario, Session, Setup
 from benchmark.models import Drive, PreparedModel, RunFailure, silent
 from benchmark.models.model_result import LowerFace, OnStep, lower_face
 from benchmark.response.force_curve import Array, straight_on
-
-Setup: TypeAlias = tuple[Tool, Support]
 
 PLACE_HOLDER = 0.5e-3
 """Peak of the load in a set-up's scenario, m; a ramp brings its own."""
@@ -85,8 +82,7 @@ def depth_ramp(model: PreparedModel, depth: float, steps: int, on_step: OnStep =
     return Ramp(np.append(0.0, result.depth), np.append(0.0, result.force), layers, below, result.failure)
 
 
-def setup_scenario(session: Session, tissue: Tissue, setup: Setup) -> Scenario:
-    """A scenario of a tissue under one tool and support of the session; its load is a place holder."""
-    tool, support = setup
+def setup_scenario(session: Session, setup: Setup) -> Scenario:
+    """A scenario of a set-up with the session's settings; its load is a place holder."""
     load = Load(control="depth", peak=PLACE_HOLDER, shape="ramp", duration=1.0, observations=1)
-    return session.scenario(tissue, tool, support, load)
+    return session.scenario(*setup, load)

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 from pydantic import BaseModel
 
 from benchmark.errors import InputError
-from benchmark.files import Support, Tissue, Tool
+from benchmark.files import Setup, Support, Tissue, Tool
 from benchmark.files.overrides import layer_path
 from benchmark.files.sessions.description import ASSUMED_EDGE
 from benchmark.files.tissue import Layer, scaled_layer
@@ -91,9 +91,7 @@ def natural_change(tissue: Tissue, key: str) -> float:
     return layer.hyperelastic.shear_modulus or layer.shear_modulus
 
 
-def changed_setup(
-    tissue: Tissue, tool: Tool, support: Support, key: str, change: float
-) -> tuple[Tissue, Tool, Support]:
+def changed_setup(tissue: Tissue, tool: Tool, support: Support, key: str, change: float) -> Setup:
     """The set-up with `key` times 1 + `change`, or plus `change` where `is_absolute`.
 
     Of the tool, the support, a layer (`dermis.thickness`), its law (`dermis.hyperelastic.c20`), or the thickness of all

@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from benchmark.errors import InputError
-from benchmark.files import Support, Tissue, Tool
+from benchmark.files import Setup, Support, Tissue, Tool
 from benchmark.models.model_result import LowerFace, UncoveredError
 from benchmark.response.elastic_table import POINTS, ElasticTable, SeparableField, SetupDerivative
 from benchmark.response.force_curve import Array
@@ -30,7 +30,6 @@ STEP = 0.06
 """Natural change of a set-up parameter by which tables are differentiated."""
 MARGIN = 1.25
 """A table reaches this much deeper than the trials."""
-Specimen: TypeAlias = tuple[Tissue, Tool, Support]
 
 ENDLESS = 0.05
 """Thickness of an endless layer, m."""
@@ -88,7 +87,7 @@ def wave_ramp(tissue: Tissue, tool: Tool, support: Support, levels: Array) -> Ra
     return Ramp(levels, force, layers, LowerFace(levels, radii, outward, sunk))
 
 
-def _bonded(setup: Specimen, depth: float, keys: Sequence[str]) -> ElasticTable:
+def _bonded(setup: Setup, depth: float, keys: Sequence[str]) -> ElasticTable:
     grid = np.linspace(0.0, depth, POINTS)
     force = _layered_force(*setup[:2], grid)
     by = {}
@@ -99,7 +98,7 @@ def _bonded(setup: Specimen, depth: float, keys: Sequence[str]) -> ElasticTable:
     return ElasticTable(grid, force, np.array([0.0, 1.0]), by=by)
 
 
-def _sheet(setup: Specimen, depth: float, keys: Sequence[str]) -> ElasticTable:
+def _sheet(setup: Setup, depth: float, keys: Sequence[str]) -> ElasticTable:
     grid = np.linspace(0.0, depth, POINTS)
     levels = np.linspace(0.0, 1.0, LEVELS + 1) ** 1.3 * depth
     radii = np.linspace(0.0, float(setup[2].hole_radius or 0.0), RADII)

@@ -13,8 +13,10 @@ from benchmark.exchange import FORMATS, export_text
 from benchmark.experiments.parameters_answer import ParametersAnswer
 from benchmark.files import Load, Scenario, Session, Support, Tissue, Tool
 from benchmark.identification import FittedParameter, SheetFit, parameter_columns
+from benchmark.identification.parameters.free_parameters import RELAXATION
 from benchmark.identification.parameters.identified import Identified
 from benchmark.identification.parameters.identified_tissue import identified_tissue
+from benchmark.identification.session_fit import elastic_only
 from benchmark.model_file import RepairedModel
 from benchmark.response.model_with_effects import load_repair
 from benchmark.runs.fitted_session import FittedSession, fit_trials
@@ -102,7 +104,12 @@ class FitRecord:
             **common,
             "settled": self.settled,
             **({} if self.sheet is None else {"sheet": self.sheet.to_dict()}),
-            "session": {"name": session.name, "fingerprint": session.fingerprint, "synthetic": session.synthetic},
+            "session": {
+                "name": session.name,
+                "fingerprint": session.fingerprint,
+                "synthetic": session.synthetic,
+                **({"heights_mm": heights} if (heights := _heights(session)) else {}),
+            },
             "specimen": session.specimen.name,
             "warnings": list(self.warnings),
             **({} if self.repair is None else {"effects": list(self.repair.slugs)}),
@@ -145,6 +152,11 @@ class FitRecord:
         return [*out, *self.exported]
 
 
+def _heights(session: Session) -> dict[str, float]:
+    """Height of the specimen under each trial that has its own, mm."""
+    return {each.name: 1e3 * each.height for each in session.trials if each.height is not None}
+
+
 @dataclass(frozen=True)
 class FitOutcome:
     """A finished fit on disk: its folder, the content of `fit.json`, headline, warnings, and whether it settled."""
@@ -179,7 +191,10 @@ def carry_out_fit(request: FitRequest, listener: Listener) -> FitRecord:
     answer = answer_of((found, *others), request.wish, table, listener)
     exported, said = exports(answer.identified, request.export)
     theirs = (f"{one.session.name}: {text}" for one in others for text in one.warnings if text not in found.warnings)
-    found = replace(found, warnings=(*found.warnings, *theirs, *said))
+    relaxes = any(key.endswith(RELAXATION) for key in table.free)
+    idle = elastic_only(found.fit.trials) if relaxes else ()  # of an elastic law, which is not what was fitted
+    own = (text for text in found.warnings if text not in idle)
+    found = replace(found, warnings=(*own, *theirs, *said))
     return FitRecord(found, repair, request.seed, answer, exported)
 
 
@@ -248,11 +263,9 @@ def check_exports(session: Session, endings: Sequence[str], *, free: bool) -> No
     unknown = [ending for ending in endings if ending not in FORMATS]
     if unknown:
         raise InputError(f"--export {unknown[0]}: no such format; allowed: {', '.join(FORMATS)}")
-    for tool, support in dict.fromkeys((trial.tool, trial.support) for trial in session.trials):
+    for tissue, tool, support in session.setups:
         for ending in endings:
-            export_text(
-                _press(session, session.specimen, tool, support, 0.1 * session.specimen.layers[0].thickness), ending
-            )
+            export_text(_press(session, tissue, tool, support, 0.1 * tissue.layers[0].thickness), ending)
 
 
 def exports(answer: Identified, endings: Sequence[str]) -> tuple[tuple[tuple[str, str], ...], tuple[str, ...]]:

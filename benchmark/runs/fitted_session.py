@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmark.errors import InputError
-from benchmark.files import Session, Trial, load_session
+from benchmark.files import Session, Setup, Trial, load_session
 from benchmark.identification import (
     FittingError,
     SessionFit,
@@ -27,7 +27,6 @@ from benchmark.identification.sheet_trial import SheetTrial
 from benchmark.model_file import RepairedModel
 from benchmark.models import Array
 from benchmark.response import ForceCurve, RampTable
-from benchmark.response.ramp import Setup
 from benchmark.runs.options import Listener
 from benchmark.runs.report.values import fit_headline
 from benchmark.runs.trials.film_tables import MarkerMotion, motions_of
@@ -52,7 +51,7 @@ class FittedSession:
     fit
         Of its specimen.
     trials
-        In the session's order, each with the force curve of its tool and support.
+        In the session's order, each with the force curve of its set-up.
     warnings
         Of reading, of the curves, of the films, and of the fit.
     followed
@@ -114,7 +113,7 @@ def fit_trials(
     base = base_curves(session, _depths(session), listener)
     listener.say(f"{session.name}: fitting {counted(len(session.trials), 'trial')}")
     try:
-        trials = tuple(_trial_data(trial, base.curves[trial.tool, trial.support]) for trial in session.trials)
+        trials = tuple(_trial_data(trial, base.curves[session.setup(trial)]) for trial in session.trials)
         if repair is not None:
             return _fitted_with(repair, session, trials, base)
         fit = fit_session(trials, session.specimen.layers)
@@ -134,9 +133,9 @@ def _with_films(found: FittedSession, films: Films, listener: Listener) -> Fitte
     models, said = session_sheets(session, _depths(session), films.view, listener)
     starts = {trial.key: trial for trial in found.fit.trials}
     pairs = {
-        data.key: (film, models[trial.tool, trial.support])
+        data.key: (film, models[session.setup(trial)])
         for trial, data in zip(session.trials, found.trials, strict=True)
-        if data.key in films.films and data.key in starts and (trial.tool, trial.support) in models
+        if data.key in films.films and data.key in starts and session.setup(trial) in models
         if (film := filmed_trial(data, films.films[data.key])) is not None
     }
     sheet = fit_sheet(tuple(pairs.values()), starts) if pairs else None
@@ -180,10 +179,10 @@ def _fitted_with(
 
 
 def _depths(session: Session) -> dict[Setup, float]:
-    """The depth each tool and support needs a curve to."""
+    """The depth each set-up needs a curve to."""
     depths: dict[Setup, float] = {}
     for trial in session.trials:
-        key = (trial.tool, trial.support)
+        key = session.setup(trial)
         needed = MARGIN * required_depth(trial.table.depth, trial.table.force)
         depths[key] = max(depths.get(key, 0.0), needed)
     return depths

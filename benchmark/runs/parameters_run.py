@@ -12,12 +12,12 @@ import numpy as np
 from benchmark.errors import InputError, SolverError
 from benchmark.experiments.optimal_design import designed
 from benchmark.experiments.parameters_answer import ParametersAnswer
-from benchmark.files import Session
+from benchmark.files import Session, Setup
 from benchmark.files.schema import validated
 from benchmark.files.sessions.fit_table import FitTable
 from benchmark.files.sessions.session_folder import SESSION_FILE
 from benchmark.files.sources import Source, read_toml
-from benchmark.identification.parameters.free_parameters import COMMON, EDGE_RADIUS, MODULUS, SetUp, parameters_of
+from benchmark.identification.parameters.free_parameters import COMMON, EDGE_RADIUS, MODULUS, parameters_of
 from benchmark.identification.parameters.identifiability import directions
 from benchmark.identification.parameters.identified import Identified, identify
 from benchmark.identification.parameters.law_selection import scores, simplest
@@ -38,6 +38,7 @@ from benchmark.response.least_squares import least_squares
 from benchmark.response.ramp_table import EVERYWHERE
 from benchmark.runs.fitted_session import FittedSession
 from benchmark.runs.options import Listener
+from reports.formatting import counted
 
 BETTER = 6.0
 """Gain of -2 log likelihood per further parameter from which free layers follow the trials better than one factor.
@@ -104,8 +105,7 @@ class ParameterWish:
         """
         for name in self.laws or ():
             law_shape(name)
-        table, first = self.table(session.fit), session.trials[0]
-        setup = (session.specimen, first.tool, first.support)
+        table, setup = self.table(session.fit), session.setups[0]
         if not table.free and (self.sessions or table.law is not None or self.posterior):
             raise InputError("several sessions, a law or a posterior need free parameters: give --free KEY,KEY")
         for key in (key for key in table.free if key != EDGE_RADIUS):
@@ -117,8 +117,7 @@ class ParameterWish:
         else:
             self._refuse_unused(table, file)
         if not self.sessions:  # of several, the others' layers are known later
-            setups = [(session.specimen, one.tool, one.support) for one in session.trials]
-            check_exact(table.exact, setups, f"{file}: [fit] exact" if self.exact is None else "--exact")
+            check_exact(table.exact, session.setups, f"{file}: [fit] exact" if self.exact is None else "--exact")
 
     def _refuse_unused(self, table: FitTable, file: Path) -> None:
         """Refuse what a fit is told that has no free parameters, since it would be passed over."""
@@ -133,7 +132,7 @@ class ParameterWish:
                 needed = "give free = [...] in [fit], or --free KEY,KEY"
                 raise InputError(f"{place} {next(iter(keys))}: without free parameters this is of no use; {needed}")
 
-    def _check_told(self, table: FitTable, setup: SetUp, file: Path) -> None:
+    def _check_told(self, table: FitTable, setup: Setup, file: Path) -> None:
         """Refuse what a file tells of a fit that does not fit; raises InputError that names the file."""
         for law in self.laws or (table.law,):
             try:
@@ -169,13 +168,14 @@ def fit_parameters(founds: Sequence[FittedSession], table: FitTable, listener: L
     SolverError
         The model does not follow the presses.
     """
-    made = assembled([_base(one) for one in founds], table)
-    names = [one.session.name for one in founds]
-    count = len(made.problem.free)
-    listener.say(f"{names[0]}: fitting {count} parameters to {len(made.problem.trials)} trials")
+    bases = [base for one in founds for base in _bases(one)]
+    made = assembled(bases, table)
+    names = [one.session.name for one in bases]
+    unknown, trials = counted(len(made.problem.free), "parameter"), counted(len(made.problem.trials), "trial")
+    listener.say(f"{founds[0].session.name}: fitting {unknown} to {trials}")
     start = begun(made.problem, made.touches, made.zeros)
     found, others = other_answers(fit_layers(start, listener.say), listener.say)
-    groups = [_group(made, k, len(founds) > 1) for k in range(len(made.problem.trials))]
+    groups = [_group(made, k, len(bases) > 1) for k in range(len(made.problem.trials))]
     answer = identify(found, others, directions(start), groups, names)
     return replace(answer, remarks=made.warnings)
 
@@ -187,13 +187,20 @@ def _group(made: Assembled, number: int, several: bool) -> str:
     return f"{press.session.name}: {trial.data.condition}" if several else trial.data.condition
 
 
-def _base(found: FittedSession) -> FittedBase:
+def _bases(found: FittedSession) -> list[FittedBase]:
+    """A session with its fit, one base of each height of specimen."""
     sheet = None if found.filmed is None else found.filmed.sheet
     films, view = {}, EVERYWHERE
     for key, (filmed, table) in found.sheets.items():
         own = None if sheet is None else sheet.trial(key)
         films[key], view = (filmed, (0.0, 0.0) if own is None else own.state.axis), table.view
-    return FittedBase(found.session, found.fit, found.trials, found.followed, films, view)
+    data = {one.key: one for one in found.trials}
+    return [
+        FittedBase(
+            one, found.fit, [data[each.condition, each.name] for each in one.trials], found.followed, films, view
+        )
+        for one in found.session.by_height()
+    ]
 
 
 def common_factor_warnings(found: FittedSession, listener: Listener) -> tuple[str, ...]:
@@ -226,7 +233,7 @@ def common_factor_warnings(found: FittedSession, listener: Listener) -> tuple[st
 
 def _surrogate_fit(found: FittedSession, keys: tuple[str, ...]) -> LayerFit:
     """A fit on the surrogates of the first fit, without uncertainties of the set-up."""
-    made = assembled([_base(found)], FitTable(free=keys, exact=("all",)))
+    made = assembled(_bases(found), FitTable(free=keys, exact=("all",)))
     return fit_layers(begun(made.problem, made.touches, made.zeros), rounds=1)
 
 
@@ -244,7 +251,7 @@ def with_setup(found: FittedSession, exact: tuple[str, ...], listener: Listener)
         return replace(found, warnings=(*found.warnings, *passed_over))
     listener.say(f"{session.name}: how far may the set-up as told move the stiffness?")
     try:
-        made = assembled([_base(found)], FitTable(free=(COMMON,), exact=exact))
+        made = assembled(_bases(found), FitTable(free=(COMMON,), exact=exact))
         presses = press_all(made.problem, made.problem.start)
     except (InputError, SolverError) as error:
         said = f"how far the set-up as told may move the stiffness was not worked out: {error}"

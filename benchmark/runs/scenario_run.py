@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,15 +11,18 @@ from benchmark.comparison import ComparisonError
 from benchmark.errors import TissuebenchError
 from benchmark.exchange import export_text
 from benchmark.files import Scenario
-from benchmark.models import NOTHING, Array, ModelResult, Own, StepProgress, scenario_drive
+from benchmark.models import NOTHING, Array, Drive, ModelResult, Own, StepProgress, UncoveredError, scenario_drive
 from benchmark.models.own_models import FAR_APART
+from benchmark.models.prepare import small_strain_deflection, took_finite_strain
 from benchmark.runs.options import Listener, RunOptions
 from benchmark.runs.record import RunRecord, compare_layers, deflections, gather_warnings
 from benchmark.runs.refinement import refine
-from benchmark.runs.small_strain import beside_small_strain
 from benchmark.runs.trials.measured import MeasuredComparison
 from benchmark.side_by_side import NAMES, SideBySide, run_side_by_side
 from benchmark.side_by_side.parameter_bands import ParameterBands, parameter_bands
+
+SMALL_STRAIN = "small strain"
+"""The note of a wave result on what small strain would have said."""
 
 
 def run_scenario(
@@ -172,3 +176,27 @@ def _side_by_side(scenario: Scenario, options: RunOptions, listener: Listener, o
             own=own,
             keep=options.keep,
         )
+
+
+def beside_small_strain(scenario: Scenario, pair: SideBySide, drive: Drive) -> SideBySide:
+    """Return the pair with a note on how far the wave of small strain is off at peak load, layer by layer.
+
+    Without one where small strain does not cover the tool, as under friction.
+    """
+    fem, wave = pair.fem.result, pair.wave.result
+    if fem is None or wave is None or wave.model != "wave" or not took_finite_strain(scenario, wave):
+        return pair
+    peak = int(np.abs(drive.value).argmax())
+    if peak >= len(fem.top_deflection):
+        return pair
+    try:
+        linear = small_strain_deflection(scenario, drive)[peak]
+    except UncoveredError:
+        return pair
+    expected = fem.top_deflection[peak]
+    errors = 100.0 * (linear / expected - 1.0)
+    told = ", ".join(f"{layer} {error:+.1f} %" for layer, error in zip(wave.layers, errors, strict=True))
+    result = replace(
+        wave, notes={**wave.notes, SMALL_STRAIN: f"the wave of small strain would be off by {told} at peak load"}
+    )
+    return replace(pair, wave=replace(pair.wave, result=result))

@@ -12,7 +12,7 @@ import numpy as np
 
 from benchmark.child_processes import output_on_stderr
 from benchmark.errors import TissuebenchError
-from benchmark.files import Load, Scenario, Session, Support, Tissue, Tool, scaled_tissue
+from benchmark.files import Load, Scenario, Session, Setup, Support, Tissue, Tool, scaled_tissue
 from benchmark.identification import TrialData, predict, sheet_force
 from benchmark.identification.effects_in_fit import trial_context
 from benchmark.identification.sheet_model import relaxed
@@ -23,7 +23,7 @@ from benchmark.models.prepare import scenario_drive
 from benchmark.response import depth_ramp, trial_force
 from benchmark.response.model_with_effects import effects_of, on_its_base
 from benchmark.response.nearest_curve import carried_forces, nearest_tools, tool_name
-from benchmark.response.ramp import Setup, setup_scenario
+from benchmark.response.ramp import setup_scenario
 from benchmark.runs.fitted_session import FittedSession, fit_trials
 from benchmark.runs.options import Listener, RunOptions
 from benchmark.runs.record import RunRecord
@@ -59,36 +59,41 @@ def run_session(
     """
     found = fit_trials(path, specimen, settings, listener, repair=own.repair)
     session, fit = found.session, found.fit
-    fitted = scaled_tissue(session.specimen, found.stiffness_factor, f"{session.specimen.name}, fitted")
-    scenario, other = session_scenario(found, fitted, as_told=own.reference is not None)
-    predictions, said = _predictions(found, fitted, own)
+    scenario, other = session_scenario(found, as_told=own.reference is not None)
+    predictions, said = _predictions(found, own)
     measured, warnings = MeasuredComparison(session, fit, predictions, found.filmed), (*found.warnings, *said, *other)
     warnings += () if own.wave is not None else flat_wave(scenario.tool)
     return run_scenario(scenario, options, listener, name=session.name, measured=measured, warnings=warnings, own=own)
 
 
-def session_scenario(found: FittedSession, tissue: Tissue, *, as_told: bool) -> tuple[Scenario, tuple[str, ...]]:
-    """Return a press to the trials' median peak force with the tool and support of the first trial, and remarks.
+def fitted_tissue(found: FittedSession, told: Tissue) -> Tissue:
+    """The tissue of a set-up with the stiffness that was found."""
+    return scaled_tissue(told, found.stiffness_factor, f"{told.name}, fitted")
+
+
+def session_scenario(found: FittedSession, *, as_told: bool) -> tuple[Scenario, tuple[str, ...]]:
+    """Return a press of the fitted specimen to the trials' median peak force in the first trial's set-up, and remarks.
 
     Where the finite elements do not carry that force, the nearest tool that does takes its place, at the most that one
     carries; a scenario `as_told` keeps tool and force.
     """
     session = found.session
-    first, peak = session.trials[0], float(np.median([trial.peak for trial in found.fit.trials]))
-    carried = carried_forces(found.followed[first.tool, first.support])
-    if as_told or carried[0] == (first.tool, np.inf):
-        return _press(session, tissue, first.tool, first.support, peak), ()
+    first, peak = session.setups[0], float(np.median([trial.peak for trial in found.fit.trials]))
+    told, support, tissue = *first[1:], fitted_tissue(found, first[0])
+    carried = carried_forces(found.followed[first])
+    if as_told or carried[0] == (told, np.inf):
+        return _press(session, tissue, told, support, peak), ()
     forces = {tool: most * found.stiffness_factor for tool, most in carried}
-    for tool in nearest_tools(first.tool):
-        scenario = _press(session, tissue, tool, first.support, peak)
+    for tool in nearest_tools(told):
+        scenario = _press(session, tissue, tool, support, peak)
         if forces.get(tool, np.inf) >= peak and _followed(scenario):
-            name = tool_name(tool, first.tool)
+            name = tool_name(tool, told)
             said = f"the finite elements do not follow the tool as told to {peak:.3g} N: both models have {name}"
-            return scenario, (() if tool == first.tool else (said,))
+            return scenario, (() if tool == told else (said,))
     strongest = max(forces, key=lambda tool: forces[tool])
-    name, most = tool_name(strongest, first.tool), SAFE * min(forces[strongest], peak)
+    name, most = tool_name(strongest, told), SAFE * min(forces[strongest], peak)
     said = f"the finite elements do not follow the trials' median peak of {peak:.3g} N: both models have {name}"
-    return _press(session, tissue, strongest, first.support, most), (f"{said}, to {most:.3g} N",)
+    return _press(session, tissue, strongest, support, most), (f"{said}, to {most:.3g} N",)
 
 
 def flat_wave(tool: Tool) -> tuple[str, ...]:
@@ -113,14 +118,14 @@ def _followed(scenario: Scenario) -> bool:
 
 
 @output_on_stderr()
-def _predictions(found: FittedSession, tissue: Tissue, own: Own) -> tuple[tuple[TrialPrediction, ...], tuple[str, ...]]:
+def _predictions(found: FittedSession, own: Own) -> tuple[tuple[TrialPrediction, ...], tuple[str, ...]]:
     """Both models' forces for each trial that was fitted, and why the wave model has none for some.
 
     Of a user's model, stdout goes to stderr.
     """
     kept = {trial.key for trial in found.fit.trials}
-    setups = [(trial.tool, trial.support) for trial in found.session.trials]
-    waves = {setup: _wave(found.session, tissue, setup, own) for setup in dict.fromkeys(setups)}
+    setups = [found.session.setup(trial) for trial in found.session.trials]
+    waves = {setup: _wave(found, setup, own) for setup in dict.fromkeys(setups)}
     answers = [
         (setup, trial, _wave_force(trial, found, waves[setup], own))
         for setup, trial in zip(setups, found.trials, strict=True)
@@ -153,9 +158,10 @@ def _remembers(
     return ()
 
 
-def _wave(session: Session, tissue: Tissue, setup: Setup, own: Own) -> PreparedModel | str:
+def _wave(found: FittedSession, setup: Setup, own: Own) -> PreparedModel | str:
     """The wave model of the fitted specimen, or why it does not cover it."""
-    scenario = setup_scenario(session, tissue, setup)
+    tissue, tool, support = setup
+    scenario = setup_scenario(found.session, (fitted_tissue(found, tissue), tool, support))
     try:
         if own.repair is not None:
             return prepare("wave", on_its_base(own.repair, scenario))

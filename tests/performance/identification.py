@@ -149,7 +149,7 @@ class Presses:
             return CubicSpline(ramp.depth, ramp.force)
         share = np.arange(1, WHOLE + 1) / WHOLE
         way = press.depth * np.minimum(2.0 * share, 2.0 - 2.0 * share)
-        model = prepare("fem", setup_scenario(press.session, setup[0], setup[1:]))
+        model = prepare("fem", setup_scenario(press.session, setup))
         run = model.run(Drive("depth", share, way))
         return CubicSpline(np.append(0.0, way[: WHOLE // 2]), np.append(0.0, run.force[: WHOLE // 2]))
 

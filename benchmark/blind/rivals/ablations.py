@@ -11,7 +11,7 @@ from typing import Any
 from benchmark.discovery import Settings, criteria, discover
 from benchmark.discovery.discovery_result import Discovery
 from benchmark.errors import InputError
-from benchmark.files import Session, Support, Tool
+from benchmark.files import Session, Setup
 
 EXACT = 1e-9
 """Print scatter of a grid that is trusted, m."""
@@ -23,7 +23,7 @@ NONE: Mapping[str, Any] = MappingProxyType({})
 class _Unsaid(Session):
     """A session that states no uncertainty."""
 
-    def uncertainties(self, tool: Tool, support: Support) -> dict[str, float]:  # noqa: ARG002
+    def uncertainties(self, setup: Setup) -> dict[str, float]:  # noqa: ARG002
         """None."""
         return {}
 

@@ -36,7 +36,7 @@ class Calibrated:
 def calibrate(session: Session, study: Study, table_of: TableOf | None = None) -> Calibrated:
     """Fit the base and estimate noise and spreads, twice over."""
     setup = setup_priors(session)
-    tables = _tables(session, study, table_of or fem_or_wave_table(session, table_keys(session)))
+    tables = _tables(study, table_of or fem_or_wave_table(session, table_keys(session)))
     setup = {key: size for key, size in setup.items() if any(key in table.by for table in tables)}
     problem = TrialsProblem(study, tables, _first_noise(study), _wide(study), trial_refs(study), setup=setup)
     vector, state = first_guess(problem)
@@ -60,13 +60,13 @@ def _with_thicknesses(fitted: Fit) -> Fit:
     return fit(EffectModel(problem, ()), fitted.vector, fitted.nuisance, most=6)
 
 
-def _tables(session: Session, study: Study, table_of: TableOf) -> tuple[ElasticTable, ...]:
-    """The table of each condition; those with the same tool and support share one."""
-    setups = [(condition.tool, condition.support) for condition in study.conditions]
+def _tables(study: Study, table_of: TableOf) -> tuple[ElasticTable, ...]:
+    """The table of each condition; those with the same set-up share one."""
+    setups = [condition.setup for condition in study.conditions]
     deepest = dict.fromkeys(setups, 0.0)
     for setup, condition in zip(setups, study.conditions, strict=True):
         deepest[setup] = max(deepest[setup], condition.around.peak_depth)
-    made = {setup: table_of(session.specimen, *setup, depth).compact() for setup, depth in deepest.items()}
+    made = {setup: table_of(*setup, depth).compact() for setup, depth in deepest.items()}
     return tuple(made[setup] for setup in setups)
 
 

@@ -47,8 +47,7 @@ def _usual(key: str) -> float:
 
 def table_keys(session: Session) -> tuple[str, ...]:
     """All keys by which a session's tables are differentiated: parameters, and choices that could have been others."""
-    setups = dict.fromkeys((trial.tool, trial.support) for trial in session.trials)
-    other = dict.fromkeys(key for setup in setups for key in choices(*setup))
+    other = dict.fromkeys(key for _, tool, support in session.setups for key in choices(tool, support))
     return (*setup_priors(session), *other)
 
 
@@ -62,8 +61,8 @@ def setup_entries(tables: Sequence[ElasticTable]) -> tuple[Effect, ...]:
 def stated(session: Session) -> dict[str, float]:
     """Relative uncertainties that the files of a session state of its set-ups, the largest over its trials."""
     found: dict[str, float] = {}
-    for tool, support in dict.fromkeys((trial.tool, trial.support) for trial in session.trials):
-        for key, share in session.uncertainties(tool, support).items():
+    for setup in session.setups:
+        for key, share in session.uncertainties(setup).items():
             found[key] = max(share, found.get(key, 0.0))
     return found
 

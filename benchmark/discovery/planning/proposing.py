@@ -31,7 +31,7 @@ from benchmark.experiments.menu import (
     same_again,
     second_tools,
 )
-from benchmark.files import Support, Tissue, Tool
+from benchmark.files import Setup
 from benchmark.response.elastic_table import ElasticTable, TableOf
 
 ROWS = 400
@@ -81,7 +81,6 @@ SPARE = 0.8
 def propose(
     found: Findings,
     table_of: TableOf | None = None,
-    specimen: Tissue | None = None,
     allowed: Allowed = ANYTHING,
     workers: int = 1,
 ) -> NextExperiment | None:
@@ -97,8 +96,8 @@ def propose(
     ----------
     found
         A discovery with its fits.
-    table_of, specimen
-        The elastic answer of a specimen under a tool; without them no second tool is proposed.
+    table_of
+        The elastic answer of a specimen under a tool; without it no second tool is proposed.
     allowed
         What may be proposed.
     workers
@@ -110,8 +109,8 @@ def propose(
     first, second = nearest(standing)
     condition = _own_condition(found.calibrated.base.model.problem.study.conditions, allowed.done)
     seen = _with_this_tool(first, second, condition, allowed)
-    if table_of is not None and specimen is not None:
-        seen |= _tools(first, second, condition, (table_of, specimen), allowed, workers)
+    if table_of is not None:
+        seen |= _tools(first, second, condition, table_of, allowed, workers)
     seen |= _calibrations(standing, condition, allowed.rig_force)
     few = min(condition.size, criteria.ENOUGH_TRIALS)
     again = seen.pop(SAME, (None, 0.0))[1]
@@ -207,14 +206,14 @@ def _with_this_tool(first: Rival, second: Rival, condition: ConditionData, allow
 
 
 def _tools(
-    first: Rival, second: Rival, condition: ConditionData, base: tuple[TableOf, Tissue], allowed: Allowed, workers: int
+    first: Rival, second: Rival, condition: ConditionData, table_of: TableOf, allowed: Allowed, workers: int
 ) -> Seen:
     """Other tools, each with the elastic answer of the specimen under it."""
-    table_of, specimen = base
     wanted = second_tools(usual_press(condition), condition.tool.radius, allowed.radii)
     experiments = [each for each in wanted if each.name not in allowed.done]
     tools = [condition.tool.model_copy(update={"radius": each.tool_radius}) for each in experiments]
-    jobs = [(table_of, specimen, tool, condition.support, condition.around.peak_depth) for tool in tools]
+    specimen, _, support = condition.setup
+    jobs = [(table_of, (specimen, tool, support), condition.around.peak_depth) for tool in tools]
     with mapping(min(workers, len(jobs))) as mapped:
         tables = list(mapped(_table_under, jobs))
     out: Seen = {}
@@ -228,11 +227,11 @@ def _tools(
     return out
 
 
-def _table_under(job: tuple[TableOf, Tissue, Tool, Support, float]) -> ElasticTable | None:
+def _table_under(job: tuple[TableOf, Setup, float]) -> ElasticTable | None:
     """The elastic answer under a tool; None where there is none."""
-    table_of, specimen, tool, support, depth = job
+    table_of, setup, depth = job
     try:
-        return table_of(specimen, tool, support, depth)
+        return table_of(*setup, depth)
     except TissuebenchError:
         return None
 

@@ -20,13 +20,13 @@ from benchmark.discovery.base.trials_problem import NoiseModel, TrialsProblem
 from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.refitting.native_terms import NativeTerm, as_entry, moved
 from benchmark.discovery.refitting.solid_press import FemSpecimen, Numbers, Specimen, agreeing
+from benchmark.files import Setup
 from benchmark.physics import Effect, Motion
 from benchmark.physics.effect import Values
 from benchmark.physics.setup_entry import PREFIX, setup_key
 from benchmark.response.elastic_table import ElasticTable
 from benchmark.response.least_squares import TrialsFit, least_squares
 from benchmark.response.pipeline import FIRST_STEP, ForceAlone, TrialPipeline, physics_of
-from benchmark.response.ramp import Setup
 from benchmark.response.setup_change import CHOICES
 
 FREE = ("modulus", "grid_scale", "tilt_x", "tilt_y", "lens", "centre_x", "centre_y")
@@ -233,10 +233,10 @@ class EffectsInModel:
 
 
 def setup_of(problem: TrialsProblem, number: int) -> tuple[Setup, float]:
-    """Tool and support of a condition, and the deepest press of any with the same, m."""
+    """The set-up of a condition, and the deepest press of any with the same, m."""
     conditions = problem.study.conditions
-    setup = (conditions[number].tool, conditions[number].support)
-    return setup, max(each.around.peak_depth for each in conditions if (each.tool, each.support) == setup)
+    setup = conditions[number].setup
+    return setup, max(each.around.peak_depth for each in conditions if each.setup == setup)
 
 
 def _thinned(phase: NDArray[np.int64]) -> NDArray[np.int64]:

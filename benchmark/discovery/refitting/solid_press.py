@@ -15,13 +15,13 @@ import numpy as np
 from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.refitting.native_terms import NativeTerm
 from benchmark.errors import InputError
-from benchmark.files import Session, Support, Tissue, Tool
+from benchmark.files import Session, Setup, stretched_tissue
 from benchmark.files.tissue import PronyTerm
 from benchmark.models import Drive, prepare
 from benchmark.response.differentiated_ramp import DifferentiatedRamp, differentiated_ramp, elastic_ramp
 from benchmark.response.elastic_table import POINTS, ElasticTable, SeparableField, SetupDerivative
 from benchmark.response.fem_table import ramp_table, with_choices
-from benchmark.response.ramp import Setup, setup_scenario
+from benchmark.response.ramp import setup_scenario
 from benchmark.response.setup_change import CHOICES, changed_setup
 from benchmark.response.wave_table import MARGIN, wave_table
 
@@ -44,7 +44,7 @@ class Specimen(Protocol):
         ...
 
     def table(self, setup: Setup, depth: float, numbers: Numbers) -> ElasticTable:
-        """The table of a tool and support as told down to a depth in m, with derivatives; raises like `pressed`."""
+        """The table of a set-up as told down to a depth in m, with derivatives; raises like `pressed`."""
         ...
 
     def pressed(self, setup: Setup, depth: float, numbers: Numbers, changes: Numbers) -> ElasticTable:
@@ -74,7 +74,7 @@ class WaveSpecimen:
             self._made,
             (setup, depth),
             lambda: wave_table(
-                self.session.specimen, *setup, depth, [key for key in self.keys if _has(self.session, setup, key)]
+                *_under(self.session, setup), depth, [key for key in self.keys if _has(self.session, setup, key)]
             ),
         )
 
@@ -130,15 +130,15 @@ class FemSpecimen:
         weights = {key: each for term in self.terms for key, each in term.ramp_keys(self.session).items()}
         names = {key: _of_law(session, key) for key in self.keys if _has(session, setup, key)}
         wanted = dict.fromkeys([*names.values(), *(name for each in weights.values() for name in each)])
-        specimen = session.specimen
-        ramp = differentiated_ramp(session, specimen, *setup, MARGIN * depth, list(wanted), steps=STEPS, second=True)
+        under = _under(session, setup)
+        ramp = differentiated_ramp(session, *under, MARGIN * depth, list(wanted), steps=STEPS, second=True)
         _reaches(float(ramp.depth[-1]), depth)
         plain = ramp_table(ramp, np.linspace(0.0, float(ramp.depth[-1]), POINTS))
         by = {key: plain.by[name] for key, name in names.items()}
         for key, each in weights.items():
             by[key] = _together([(weight, plain.by[name]) for name, weight in each.items()])
         choices = [key for key in self.keys if key in CHOICES]
-        return with_choices(session, (specimen, *setup), replace(plain, by=by), choices)
+        return with_choices(session, under, replace(plain, by=by), choices)
 
     def fading(
         self, setup: Setup, motion: tuple[Array, Array], numbers: Numbers, series: Mapping[float, float]
@@ -148,7 +148,7 @@ class FemSpecimen:
         Parameters
         ----------
         setup
-            Tool and support.
+            As told.
         motion
             Times s from just after rest, and depths m.
         numbers
@@ -166,8 +166,9 @@ class FemSpecimen:
         if whole >= MOST_SHARE:
             raise InputError(f"no more than {100 * MOST_SHARE:g} % of the layers' shear may fade")
         terms = tuple(PronyTerm(g=share, tau=time) for time, share in series.items())
-        layers = tuple(layer.model_copy(update={"relaxation": terms}) for layer in session.specimen.layers)
-        scenario = setup_scenario(session, session.specimen.model_copy(update={"layers": layers}), setup)
+        tissue, tool, support = _under(session, setup)
+        layers = tuple(layer.model_copy(update={"relaxation": terms}) for layer in tissue.layers)
+        scenario = setup_scenario(session, (tissue.model_copy(update={"layers": layers}), tool, support))
         result = prepare("fem", scenario).run(Drive("depth", *motion))
         if not result.complete:
             raise InputError("the finite elements stop within the press")
@@ -179,10 +180,16 @@ def _reaches(reached: float, depth: float) -> None:
         raise InputError(f"the finite elements stop at {1e3 * reached:.3g} mm of {1e3 * depth:.3g} mm")
 
 
+def _under(session: Session, setup: Setup) -> Setup:
+    """A set-up as told with the session's specimen, whose numbers may be others, in its height."""
+    told, tool, support = setup
+    return stretched_tissue(session.specimen, told.thickness), tool, support
+
+
 def _has(session: Session, setup: Setup, key: str) -> bool:
     """Whether a set-up has a number of this key."""
     try:
-        changed_setup(session.specimen, *setup, key, 0.0)
+        changed_setup(*_under(session, setup), key, 0.0)
     except InputError:
         return False
     return True
@@ -195,13 +202,13 @@ def _of_law(session: Session, key: str) -> str:
     return name + STIFFNESS if own else key
 
 
-def moved_setup(session: Session, setup: Setup, changes: Numbers) -> tuple[Tissue, Tool, Support]:
+def moved_setup(session: Session, setup: Setup, changes: Numbers) -> Setup:
     """The set-up with its numbers changed; choices are left out."""
-    tissue, tool, support = session.specimen, *setup
+    moved = _under(session, setup)
     for key, change in changes.items():
         if change != 0.0 and key not in CHOICES and _has(session, setup, key):
-            tissue, tool, support = changed_setup(tissue, tool, support, _of_law(session, key), change)
-    return tissue, tool, support
+            moved = changed_setup(*moved, _of_law(session, key), change)
+    return moved
 
 
 def agreeing(told: ElasticTable, changes: Numbers, pressed: ElasticTable) -> ElasticTable:

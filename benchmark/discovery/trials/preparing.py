@@ -13,7 +13,7 @@ from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.trials.cycles import by_cycles
 from benchmark.discovery.trials.marker_layout import Layout, layout
 from benchmark.discovery.trials.printed_grid import printed_grid, resting_places
-from benchmark.discovery.trials.protocols import by_protocol, most_odd, specimens
+from benchmark.discovery.trials.protocols import by_height, by_protocol, most_odd, specimens
 from benchmark.discovery.trials.rows import (
     RawTrial,
     acceleration,
@@ -27,7 +27,8 @@ from benchmark.discovery.trials.rows import (
 from benchmark.discovery.trials.segments import segments, stages
 from benchmark.discovery.trials.study import ConditionData, Study
 from benchmark.errors import InputError
-from benchmark.files import Camera, Session, Trial
+from benchmark.files import Camera, Session, Tissue, Trial, stretched_tissue
+from benchmark.files.sessions.specimens import ONE_HEIGHT
 from benchmark.models.scenario_effects import open_radius, specimen_layers
 from benchmark.physics import TrialContext
 
@@ -61,7 +62,8 @@ def prepare(session: Session, rows: int) -> Study:
     rows = min(rows, max(LEAST_IN_TRIAL, MOST_IN_ALL // len(session.trials)))
     raw = _usable(session, warnings)
     groups = [[r for r in raw if r.trial.condition == name] for name in session.conditions]
-    kept = [each for group in groups if group for each in by_protocol(session.name, group, warnings)]
+    parts = [part for group in groups if group for part in by_height(group, warnings)]
+    kept = [each for part in parts for each in by_protocol(session.name, part, warnings)]
     camera, seen = session.camera, _seen(kept)
     grid = None if camera is None else _grid(camera, kept, seen, warnings)
     order = {trial.name: number for number, trial in enumerate(session.trials)}
@@ -195,6 +197,7 @@ def _condition(
     first = group[0].trial
     return ConditionData(
         name=first.condition,
+        specimen=_pressed(session, group),
         tool=first.tool,
         support=first.support,
         trials=tuple(raw.trial.name for raw in group),
@@ -209,23 +212,32 @@ def _condition(
         phase=phase,
         cycle=cycle,
         part=part,
-        around=_context(session, first, data, grid),
+        around=_context(session, group, data, grid),
         specimens=specimens(group),
     )
 
 
-def _context(session: Session, first: Trial, data: Array, grid: Layout | None) -> TrialContext:
+def _pressed(session: Session, group: Sequence[RawTrial]) -> Tissue:
+    """The specimen of a condition: in the middle of its trials' heights, or the session's where these fall apart."""
+    heights = [height for raw in group if (height := raw.trial.height) is not None]
+    if len(heights) < len(group) or max(heights) > ONE_HEIGHT * min(heights):
+        return session.specimen
+    return stretched_tissue(session.specimen, float(np.median(heights)))
+
+
+def _context(session: Session, group: Sequence[RawTrial], data: Array, grid: Layout | None) -> TrialContext:
     """What effects may know of a condition with rows (R, n, 3 + C)."""
+    first, specimen = group[0].trial, _pressed(session, group)
     return TrialContext(
         tool_radius=first.tool.radius,
-        thickness=_finite(session.specimen.thickness),
+        thickness=_finite(specimen.thickness),
         peak_depth=float(data[..., 1].max()),
         peak_force=float(np.median(np.ptp(data[..., 3], axis=1))),
         duration=float((data[:, -1, 0] - data[:, 0, 0]).max()),
         spacing=session.camera.marker_spacing if session.camera and grid is not None else 0.0,
         markers=None if grid is None else grid.rest,
         hole_radius=open_radius(first.support),
-        layers=specimen_layers(session.specimen.layers),
+        layers=specimen_layers(specimen.layers),
         contact=first.tool.contact,
         edge_radius=first.tool.edge_radius or 0.0,
     )

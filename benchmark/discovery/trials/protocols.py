@@ -16,6 +16,7 @@ from benchmark.discovery.trials.rows import RawTrial
 from benchmark.discovery.trials.segments import Segment, without_dwells
 from benchmark.errors import InputError
 from benchmark.files.sessions.proposal import Motion, motion_of
+from benchmark.files.sessions.specimens import ONE_HEIGHT, gap_at_zero_depth
 
 
 def by_protocol(name: str, group: Sequence[RawTrial], warnings: list[str]) -> list[list[RawTrial]]:
@@ -53,6 +54,30 @@ def by_protocol(name: str, group: Sequence[RawTrial], warnings: list[str]) -> li
     warnings.append(f"condition {told}: its trials are of several protocols, and taken for {parts}")
     _tell_left(told, group, [raw for each in apart for raw in each], warnings)
     return apart
+
+
+def by_height(group: Sequence[RawTrial], warnings: list[str]) -> list[Sequence[RawTrial]]:
+    """The trials of a condition by their specimens' heights, where these fall apart and each has at least two trials.
+
+    Each height then becomes a condition of its own, since its base is another.
+    """
+    heights = np.array([_height(raw) for raw in group])
+    if not np.isfinite(heights).all() or heights.max() <= ONE_HEIGHT * heights.min():
+        return [group]
+    told, ranked = group[0].trial.condition, np.sort(heights)
+    first = np.append(-np.inf, ranked[1:][ranked[1:] > ONE_HEIGHT * ranked[:-1]])
+    numbers = np.searchsorted(first, heights, side="right")
+    if first.size == 1 or min(np.count_nonzero(numbers == number) for number in numbers) == 1:
+        span = f"{1e3 * ranked[0]:.4g} to {1e3 * ranked[-1]:.4g} mm"
+        warnings.append(f"condition {told}: its specimens are {span} high, and all held against one base")
+        return [group]
+    apart = []
+    for number in range(1, first.size + 1):
+        name = f"{1e3 * float(np.median(heights[numbers == number])):.4g}mm"
+        apart.append([_renamed(raw, name) for raw, own in zip(group, numbers, strict=True) if own == number])
+    listed = ", ".join(f"{each[0].trial.condition} ({len(each)} trials)" for each in apart)
+    warnings.append(f"condition {told}: its specimens are of several heights, and taken for {listed}")
+    return [*apart]
 
 
 def _alike(group: Sequence[RawTrial], most: float) -> list[RawTrial]:
@@ -233,12 +258,10 @@ def _ratio(values: Array) -> float:
 
 
 def _height(raw: RawTrial) -> float:
-    """Gap between tool and base at zero depth, m; NaN where it was not measured."""
-    table = raw.trial.table
-    gap = table.extra.get("gap")
-    row = int(np.argmin(np.abs(table.depth)))
-    height = np.nan if gap is None else float(gap[row] + table.depth[row])
-    return height if height > 0.0 else np.nan
+    """Gap between tool and base at zero depth, m, or what was told; NaN where neither is known."""
+    gap = gap_at_zero_depth(raw.trial.table)
+    height = raw.trial.height if gap is None else gap
+    return height if height is not None and height > 0.0 else np.nan
 
 
 def _speed(raw: RawTrial) -> float:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.trials.marker_layout import Layout
-from benchmark.files import Support, Tool
+from benchmark.files import Setup, Support, Tissue, Tool
 from benchmark.physics import DepthRecord, TrialContext
 
 
@@ -20,7 +20,7 @@ class ConditionData:
     Attributes
     ----------
     name : str
-    tool, support
+    specimen, tool, support
         Of the condition.
     trials : tuple of str
     numbers : (R,) int
@@ -43,6 +43,7 @@ class ConditionData:
     """
 
     name: str
+    specimen: Tissue
     tool: Tool
     support: Support
     trials: tuple[str, ...]
@@ -59,6 +60,11 @@ class ConditionData:
     part: NDArray[np.int64]
     around: TrialContext
     specimens: NDArray[np.int64]
+
+    @property
+    def setup(self) -> Setup:
+        """What was pressed, with what, and on what."""
+        return self.specimen, self.tool, self.support
 
     @property
     def size(self) -> int:

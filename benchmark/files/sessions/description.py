@@ -108,6 +108,8 @@ class TrialEntry(FileModel):
         The sheet, group or test of an instrument's file; None: each that holds a record is a trial.
     import_ : ImportTable
         What is told of this file alone, as `import = { force = "Load:kgf" }`; it counts before [import].
+    height : float or None
+        Of the specimen under this trial, m, where specimens differ in height; layers keep their shares of it.
     """
 
     file: Name
@@ -116,6 +118,7 @@ class TrialEntry(FileModel):
     film: Name | None = None
     sheet: Name | None = None
     import_: Annotated[ImportTable, Field(alias="import")] = ImportTable()
+    height: Length | None = None
 
 
 class Drive(FileModel):

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -21,9 +22,9 @@ from benchmark.files.overrides import put_in
 from benchmark.files.schema import validated
 from benchmark.files.sessions.description import SessionFile
 from benchmark.files.sessions.doubts import doubtful_forces, doubtful_times
-from benchmark.files.sessions.recordings import Recording, other_heights, read_recordings, told_heights, with_headers
+from benchmark.files.sessions.recordings import Recording, read_recordings, with_headers
 from benchmark.files.sessions.session_folder import SESSION_FILE, inside, session_table, unclosed_recordings
-from benchmark.files.sessions.session_loading import assumed_specimen
+from benchmark.files.sessions.specimens import assumed_specimen, heights_under, told_heights
 from benchmark.files.sessions.trials import read_markers
 from benchmark.files.sources import KeyPath, Source, is_file
 
@@ -113,9 +114,9 @@ def propose(folder: Path, told: Overrides = NOTHING) -> Proposal:
     specimen, why = assumed_specimen([trial.table for trial in read.trials], *told_heights(file, read.trials))
     named = _conditions(read.trials, kept=len({entry.condition for entry in file.trials}) > 1)
     tools = {tuple(sorted(tool.items())) for tool in tools_told.values() if tool}
-    held = _support_lines(resolved)
+    plates = bool(resolved.conditions) and all(keys.support for keys in resolved.conditions.values())
     camera, asked = _camera_lines(source, [entry.markers for entry in file.trials if entry.markers])
-    to_say = (*(("tool.contact",) if len(held) > 1 else _to_say(tools, why)), *asked)
+    to_say = (*(("tool.contact",) if plates else _to_say(tools, why)), *asked)
     head = [
         "# Proposed from the files of this folder. What only a person can say is marked SAY.",
         "schema = 1",
@@ -124,20 +125,19 @@ def propose(folder: Path, told: Overrides = NOTHING) -> Proposal:
         *(["", "[import]", *(f"{key} = {_text(value)}" for key, value in importing.items())] if importing else []),
         "",
         "[tool]",
-        *([] if len(held) > 1 else _tool_lines(tools)),
+        *([] if plates else _tool_lines(tools)),
         'contact = "rigid_bonded"  # SAY: rigid_bonded where the surface sticks, rigid_frictionless where it slides',
-        "",
-        "[support]",
-        *held,
+        *_support_lines(resolved),
         *camera,
-        *(_tools_of_conditions(tools_told) if len(tools) > 1 else []),
+        *(_of_conditions("tool", tools_told) if len(tools) > 1 else []),
     ]
-    trials = [line for trial, condition in zip(read.trials, named, strict=True) for line in _entry(trial, condition)]
+    heights, said = heights_under(resolved, read.trials, specimen, assumed=True)
+    trials = [line for entry in zip(read.trials, named, heights, strict=True) for line in _entry(*entry)]
     body = f"# SAY: layers, thickness and modulus; until then: {why}\n{specimen.to_toml()}"
     if not _holds(folder / SPECIMEN_FILE, body):
         _refuse_existing(folder / SPECIMEN_FILE)
     texts = {SPECIMEN_FILE: body, SESSION_FILE: "\n".join([*head, *trials]) + "\n"}
-    doubts = (*_doubts(read.trials), *other_heights(resolved, read.trials, specimen.thickness))
+    doubts = (*_doubts(read.trials), *said)
     return Proposal(texts, to_say, (*doubts, *read.aside, *unclosed_recordings(source)))
 
 
@@ -214,24 +214,25 @@ def _tool_lines(tools: set[tuple[tuple[str, str], ...]]) -> list[str]:
     return [] if tools else ['radius = "5 mm"  # SAY: no file tells it']
 
 
-def _tools_of_conditions(told: Mapping[str, Mapping[str, str]]) -> list[str]:
-    """A table for each condition whose files' headers tell of its tool, where they tell of several tools."""
-    tables = [[f"[conditions.{_text(name)}.tool]", *_from_headers(tool)] for name, tool in told.items() if tool]
+def _of_conditions(part: str, told: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """A table for each condition of whose tool or support files tell, where they tell of several."""
+    tables = [[f"[conditions.{_text(name)}.{part}]", *_from_headers(keys)] for name, keys in told.items() if keys]
     return [line for table in tables for line in ("", *table)]
 
 
-def _from_headers(tool: Mapping[str, str]) -> list[str]:
-    return [f"{key} = {_text(value)}  # from the files' headers" for key, value in tool.items()]
+def _from_headers(told: Mapping[str, Any]) -> list[str]:
+    return [f"{key} = {_text(str(value))}  # from the files' headers" for key, value in told.items()]
 
 
 def _support_lines(file: SessionFile) -> list[str]:
-    """What holds the specimen: as the files tell it, where they are of one cylinder between plates."""
-    told = {tuple(keys.support.items()) for keys in file.conditions.values()}
-    if len(told) == 1 and (keys := next(iter(told))):
-        return [f"{key} = {_text(str(value))}  # from the files" for key, value in keys]
-    return [
-        'kind = "bonded"  # SAY: bonded to a base, hole with hole_radius, half_space, or plates with specimen_radius'
-    ]
+    """What holds the specimens: as the files tell it, where they are cylinders between plates."""
+    told = {name: keys.support for name, keys in file.conditions.items()}
+    common = next(iter(told.values()), {})
+    if common and all(keys == common for keys in told.values()):
+        return ["", "[support]", *_from_headers(common)]
+    said = 'kind = "bonded"  # SAY: bonded to a base, hole with hole_radius, half_space, or plates with specimen_radius'
+    asked = [] if told and all(told.values()) else ["", "[support]", said]
+    return [*asked, *_of_conditions("support", told)]
 
 
 @dataclass(frozen=True)
@@ -292,10 +293,12 @@ def _to_say(tools: set[tuple[tuple[str, str], ...]], why: str) -> tuple[str, ...
     return (*asked, "tool.contact", "support.kind", *([] if known else ["the specimen's thickness"]))
 
 
-def _entry(trial: Recording, condition: str) -> list[str]:
+def _entry(trial: Recording, condition: str, height: float | None) -> list[str]:
     sheet = [f"sheet = {_text(trial.name)}"] if trial.name else []
     markers = [f"markers = {_text(trial.entry.markers)}"] if trial.entry.markers else []
-    return ["", "[[trials]]", f"file = {_text(trial.entry.file)}", f"condition = {_text(condition)}", *sheet, *markers]
+    high = [] if height is None else [f'height = "{1e3 * height:.4g} mm"  # of its specimen, as the files tell']
+    head = ["", "[[trials]]", f"file = {_text(trial.entry.file)}", f"condition = {_text(condition)}"]
+    return [*head, *sheet, *markers, *high]
 
 
 def _text(value: str) -> str:

@@ -41,8 +41,6 @@ NOTES = (".txt", ".dat", ".asc", ".tab", ".tsv")
 """Endings of text that need not be a trial: without rows of numbers it is left aside where nobody listed it."""
 
 
-ONE_HEIGHT = 1.1
-"""Ratio of heights up to which they may be of one specimen: what a lab calls equal specimens."""
 NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 """A number that stands by itself in a text."""
 SHALLOWEST = 25e-6
@@ -289,6 +287,11 @@ CYLINDER: Final[Mapping[str, tuple[str, str]]] = {
 """The support of what files call compression or tension, and its words."""
 
 
+MOST_UNLIKE = 1.02
+UNLIKE = " (stiffness goes with its square: put the files of each width into a sub-folder, a condition of its own)"
+"""Said of radii in one condition whose ratio is more than that."""
+
+
 def _between_plates(file: SessionFile, trials: Sequence[Recording]) -> tuple[SessionFile, list[str]]:
     """The session with the cylinders that its files tell of, in conditions of which nobody says what they were."""
     conditions, said = dict(file.conditions), []
@@ -306,6 +309,7 @@ def _between_plates(file: SessionFile, trials: Sequence[Recording]) -> tuple[Ses
         spread = (
             f", from {1e3 * min(radii):.4g} to {1e3 * max(radii):.4g} mm" if max(radii) > 1.001 * min(radii) else ""
         )
+        spread += UNLIKE if max(radii) > MOST_UNLIKE * min(radii) else ""
         said.append(
             f"condition {name}: a cylinder {words}, of {1e3 * radius:.4g} mm radius by its cross-section{spread}; its "
             "faces stick unless told: --set tool.contact=rigid_frictionless where they slide"
@@ -361,45 +365,13 @@ def _tool(condition: str, trials: Sequence[Recording]) -> dict[str, str]:
         radii = ", ".join(sorted(format_quantity(radius, LENGTH) for radius, _ in known if radius is not None))
         raise InputError(
             f"condition {condition}: the files' headers tell of different tools ({radii}); allowed: one a condition: "
-            f'put the files into sub-folders, or state tool.radius (--set tool.radius="5 mm").'
+            "put the files of each tool into a sub-folder, or state tool.radius in a session.toml (or by --set "
+            'tool.radius="..." of fit, run and discover).'
         )
     radius, ball = known.pop()
     assert radius is not None
     text = format_quantity(radius, LENGTH)
     return {"radius": text, "edge_radius": text, "contact": "rigid_frictionless"} if ball else {"radius": text}
-
-
-def told_heights(file: SessionFile, trials: Sequence[Recording]) -> tuple[list[float], str]:
-    """Heights of specimens (m) that the session tells of, or else the files' headers, and where they stand."""
-    if file.import_.height is not None:
-        return [file.import_.height], "import.height"
-    heights = [trial.header.height for trial in trials if trial.header.height is not None]
-    return heights, "median height in the files' headers"
-
-
-def other_heights(file: SessionFile, trials: Sequence[Recording], thickness: float) -> list[str]:
-    """A warning where files' headers tell of specimens that are other than the session's one is thick, m.
-
-    None of a half-space, nor where the session tells the height.
-    """
-    if file.support.get("kind") == "half_space" or file.import_.height is not None:
-        return []
-    told = [(height, Path(each.table.source).name) for each in trials if (height := each.header.height) is not None]
-    by_height: dict[float, list[str]] = {}
-    for height, name in sorted(told):
-        by_height.setdefault(height, []).append(name)
-    if all(1.0 / ONE_HEIGHT <= each / thickness <= ONE_HEIGHT for each in by_height):
-        return []
-    more = {height: f" and {len(names) - 1} more" if len(names) > 1 else "" for height, names in by_height.items()}
-    groups = [f"{1e3 * height:.4g} mm ({names[0]}{more[height]})" for height, names in by_height.items()]
-    cure = (
-        "a session has one specimen, and stiffness goes with its height: make a folder and a session of each height, "
-        "and fit them together by fit FOLDER FOLDER --free KEY"
-        if len(by_height) > 1
-        else "state the layers' thickness as it is, or leave the specimen out for that of the headers"
-    )
-    said = f"the files' headers tell heights of {', '.join(groups)}, the specimen is {1e3 * thickness:.4g} mm thick"
-    return [f"{said}: {cure}"]
 
 
 def recorded_names(trials: Sequence[Recording], names: Sequence[str]) -> list[str]:

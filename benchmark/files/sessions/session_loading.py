@@ -7,11 +7,8 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
-import numpy as np
-
-from bench_hw.tables import TrialTable
 from benchmark.errors import InputError
 from benchmark.files.load import Load
 from benchmark.files.loading import (
@@ -33,13 +30,12 @@ from benchmark.files.sessions.film_clock import on_trials_clock
 from benchmark.files.sessions.recordings import (
     Recording,
     check_tool_is_told,
-    other_heights,
     read_recordings,
     recorded_names,
-    told_heights,
     with_headers,
 )
 from benchmark.files.sessions.session_folder import fingerprint, inside, said_of_folder, session_table
+from benchmark.files.sessions.specimens import SPECIMEN_THICKNESS, assumed_specimen, heights_under, told_heights
 from benchmark.files.sessions.trials import (
     Session,
     Trial,
@@ -50,7 +46,7 @@ from benchmark.files.sessions.trials import (
 )
 from benchmark.files.shipped import find, shipped_tissues
 from benchmark.files.sources import KeyPath, Source, is_file
-from benchmark.files.tissue import Layer, Tissue
+from benchmark.files.tissue import Tissue
 from benchmark.files.tool import Support, Tool, implausible
 
 _NO_OVERRIDES: Overrides = {}
@@ -96,14 +92,15 @@ def load_session(path: str | Path, overrides: Overrides = _NO_OVERRIDES, specime
     file, told = with_headers(file, read.trials)
     check_tool_is_told(file, read.trials)
     trials, warnings = _trials(file, source, read.trials, paths_of, marker_paths)
-    trials = _filmed(trials, read.trials, dict(zip(map(id, file.trials), film_paths, strict=True)))
     chosen = overrides.get("specimen", specimen)
     of_tissue = {key: value for key, value in inner.items() if key not in paths}
     tissue, assumed, tissue_file = _specimen(file, source, chosen, read.trials, of_tissue)
+    heights, other = heights_under(file, read.trials, tissue, of_tissue, assumed=assumed is not None)
+    trials = _completed(trials, read.trials, dict(zip(map(id, file.trials), film_paths, strict=True)), heights)
     base = base_setup(file, source)
     files = [*_files(trials), *_other_files(file, source, tissue_file)]
     listed = [*paths_of, *(path for path in (*marker_paths, *film_paths) if path is not None)]
-    beside = [*other_heights(file, read.trials, tissue.thickness), *said_of_folder(source, listed, tissue_file, inner)]
+    beside = [*other, *said_of_folder(source, listed, tissue_file, inner)]
     session = Session(
         name=file.name,
         folder=source.folder,
@@ -122,8 +119,7 @@ def load_session(path: str | Path, overrides: Overrides = _NO_OVERRIDES, specime
         fit=file.fit,
         assumed_edges=assumed_edges(file, setups(file, dict.fromkeys(each.condition for each in trials), source)),
     )
-    sizes = _checked_presses(session)
-    return replace(session, warnings=(*session.warnings, *sizes))
+    return replace(session, warnings=(*session.warnings, *_checked_presses(session)))
 
 
 def _check_films(file: SessionFile, source: Source, films: Sequence[Path | None]) -> None:
@@ -135,16 +131,25 @@ def _check_films(file: SessionFile, source: Source, films: Sequence[Path | None]
         )
 
 
-def _filmed(trials: Sequence[Trial], read: Sequence[Recording], films: Mapping[int, Path | None]) -> list[Trial]:
-    return [replace(trial, film=films.get(id(each.entry))) for trial, each in zip(trials, read, strict=True)]
+def _completed(
+    trials: Sequence[Trial],
+    read: Sequence[Recording],
+    films: Mapping[int, Path | None],
+    heights: Sequence[float | None],
+) -> list[Trial]:
+    """The trials with their films and the heights of what they pressed."""
+    return [
+        replace(trial, film=films.get(id(each.entry)), height=height)
+        for trial, each, height in zip(trials, read, heights, strict=True)
+    ]
 
 
 def _checked_presses(session: Session) -> list[str]:
     """What to ask of their sizes; tools, supports and settings that no scenario can have are refused."""
     said: list[str] = []
-    for tool, support in dict.fromkeys((trial.tool, trial.support) for trial in session.trials):
-        session.scenario(session.specimen, tool, support, Load(peak=1.0))
-        said += implausible(session.specimen, tool, support)
+    for setup in session.setups:
+        session.scenario(*setup, Load(peak=1.0))
+        said += implausible(*setup)
     return list(dict.fromkeys(said))
 
 
@@ -270,65 +275,3 @@ def _other_files(file: SessionFile, source: Source, specimen: Path | None) -> li
     if file.camera is not None and file.camera.file is not None:
         files.append(inside(source.folder, file.camera.file, source.place(("camera", "file"), "camera.file")))
     return files
-
-
-SPECIMEN_THICKNESS: Final = "specimen.thickness"
-ASSUMED_THICKNESS: Final = 10e-3
-ASSUMED_YOUNGS_MODULUS: Final = 20e3
-ASSUMED_POISSON_RATIO: Final = 0.49
-ASSUMED_DENSITY: Final = 1000.0
-
-
-def assumed_specimen(tables: Sequence[TrialTable], told: Sequence[float] = (), told_by: str = "") -> tuple[Tissue, str]:
-    """One layer of soft tissue as thick as the gap between tool and base at zero depth.
-
-    Parameters
-    ----------
-    tables : sequence of TrialTable
-        The session's trials; those with a `gap` column give the thickness, its median over trials.
-    told : sequence of float
-        Heights (m) that the session or the files' headers tell of; they count before the gaps.
-    told_by : str
-        Where they stand.
-
-    Returns
-    -------
-    (Tissue, str)
-        The layer, and the warning that says what was assumed. The modulus is a start value for the fit (soft
-        tissue lies at 1 to 100 kPa); the Poisson ratio is that of a nearly incompressible tissue.
-    """
-    measured = (gap for gap in map(_gap_at_zero_depth, tables) if gap is not None)
-    gaps = [gap for gap in (told or measured) if 1e-7 <= gap <= 1e5]
-    thickness = float(f"{np.median(gaps):.9g}") if gaps else ASSUMED_THICKNESS
-    layer = Layer(
-        name="specimen",
-        thickness=thickness,
-        density=ASSUMED_DENSITY,
-        youngs_modulus=ASSUMED_YOUNGS_MODULUS,
-        poisson_ratio=ASSUMED_POISSON_RATIO,
-    )
-    how = (
-        told_by
-        if told
-        else "median gap_mm at zero depth"
-        if gaps
-        else "no file tells its height, and no trial has a usable gap_mm"
-    )
-    if len(gaps) > 1 or (gaps and not told):
-        how += f", trials: {len(gaps)}, {1e3 * min(gaps):.3g} to {1e3 * max(gaps):.3g} mm"
-    warning = (
-        f"the specimen is not given: assumed one layer of {1e3 * thickness:.4g} mm ({how}), "
-        f"Poisson ratio {ASSUMED_POISSON_RATIO:g}, density {ASSUMED_DENSITY:g} kg/m^3, "
-        f"Young's modulus {ASSUMED_YOUNGS_MODULUS / 1e3:g} kPa before any fit (--specimen FILE, or "
-        f"--set {SPECIMEN_THICKNESS}=...)"
-    )
-    return Tissue(name="assumed specimen", citation="assumed, see warnings", layers=(layer,)), warning
-
-
-def _gap_at_zero_depth(table: TrialTable) -> float | None:
-    """Thickness of the specimen (m) at the row nearest to zero depth, the first of them; None without a gap."""
-    gap = table.extra.get("gap")
-    if gap is None:
-        return None
-    row = int(np.argmin(np.abs(table.depth)))
-    return float(gap[row] + table.depth[row])

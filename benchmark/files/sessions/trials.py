@@ -1,11 +1,12 @@
-"""A trial session: measured presses of one specimen, each with the tool and the support that it was made with."""
+"""A trial session: measured presses of one tissue, each with the tool and the support that it was made with."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TypeAlias
 
 from bench_hw.errors import BenchError, TableError
 from bench_hw.tables import MarkerTable, TrialTable, read_marker_csv, read_trial_csv
@@ -17,8 +18,11 @@ from benchmark.files.sessions.description import Camera, TrialEntry
 from benchmark.files.sessions.fit_table import FitTable
 from benchmark.files.sessions.session_folder import inside
 from benchmark.files.sources import Source
-from benchmark.files.tissue import Tissue
+from benchmark.files.tissue import Tissue, stretched_tissue
 from benchmark.files.tool import Support, Tool, setup_uncertainties
+
+Setup: TypeAlias = tuple[Tissue, Tool, Support]
+"""What was pressed, with what, and on what."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +47,8 @@ class Trial:
         Their file.
     film : Path or None
         A video of them, to be tracked.
+    height : float or None
+        Of the specimen that it pressed, m; None where that is the session's.
     """
 
     name: str
@@ -54,6 +60,7 @@ class Trial:
     markers: MarkerTable | None = None
     markers_path: Path | None = None
     film: Path | None = None
+    height: float | None = None
 
 
 def trial_paths(
@@ -127,7 +134,7 @@ def read_markers(path: Path) -> MarkerTable:
 
 @dataclass(frozen=True, eq=False)
 class Session:
-    """Measured trials of one specimen.
+    """Measured trials of one tissue, of one specimen or of several that differ in height.
 
     Attributes
     ----------
@@ -136,7 +143,7 @@ class Session:
     folder : Path
         Where the files are.
     specimen : Tissue
-        What was pressed.
+        What was pressed; of several heights the one in the middle.
     specimen_assumed : bool
         Whether nobody said so, so that it is one assumed layer whose modulus only a fit can give.
     tool, support
@@ -185,9 +192,29 @@ class Session:
         """The conditions in the order in which they first occur."""
         return tuple(dict.fromkeys(trial.condition for trial in self.trials))
 
-    def uncertainties(self, tool: Tool, support: Support) -> dict[str, float]:
+    def setup(self, trial: Trial) -> Setup:
+        """What a trial pressed, with what, and on what."""
+        tissue = self.specimen if trial.height is None else stretched_tissue(self.specimen, trial.height)
+        return tissue, trial.tool, trial.support
+
+    @property
+    def setups(self) -> tuple[Setup, ...]:
+        """The set-ups of its trials, each once, in the order in which they first occur."""
+        return tuple(dict.fromkeys(self.setup(trial) for trial in self.trials))
+
+    def by_height(self) -> list[Session]:
+        """The session in parts, each with the trials of one height of specimen; itself where there is but one."""
+        heights = list(dict.fromkeys(trial.height for trial in self.trials))
+        return [self] if heights == [None] else [self._of_height(height) for height in heights]
+
+    def _of_height(self, height: float | None) -> Session:
+        own = tuple(trial for trial in self.trials if trial.height == height)
+        tissue = self.setup(own[0])[0]
+        return replace(self, name=f"{self.name}, {1e3 * tissue.thickness:.4g} mm", specimen=tissue, trials=own)
+
+    def uncertainties(self, setup: Setup) -> dict[str, float]:
         """Standard uncertainties that are stated of a set-up, as shares of the values, by keys as in `--set`."""
-        return setup_uncertainties(self.specimen, tool, support)
+        return setup_uncertainties(*setup)
 
     def scenario(self, tissue: Tissue, tool: Tool, support: Support, load: Load) -> Scenario:
         """A press as a scenario, named like the session, with the session's `settings` in it.

@@ -16,7 +16,7 @@ from typing import TypeAlias
 import numpy as np
 
 from benchmark.errors import InputError
-from benchmark.files import Support, Tissue, Tool, units
+from benchmark.files import Setup, Tissue, Tool, units
 from benchmark.files.overrides import layer_path
 from benchmark.files.tissue import Layer, scaled_layer
 from benchmark.files.units import Dimension, shown
@@ -24,7 +24,6 @@ from benchmark.identification.parameters.law_shapes import LAW_SHAPES, shear_mod
 from benchmark.response.force_curve import Array
 from benchmark.response.setup_change import RADIUS, THICKNESS, changed_setup
 
-SetUp: TypeAlias = tuple[Tissue, Tool, Support]
 Values: TypeAlias = Mapping[str, float]
 
 STRESS = ("youngs_modulus", "c10", "c01", "c20", "c30", "mu", "k1")
@@ -124,7 +123,7 @@ class Parameter:
         return self.key.endswith(POISSON)
 
 
-def parameters_of(key: str, setup: SetUp, law: str | None) -> tuple[Parameter, ...]:
+def parameters_of(key: str, setup: Setup, law: str | None) -> tuple[Parameter, ...]:
     """The parameters that a key of `--free` stands for, as a set-up has them.
 
     Raises
@@ -166,7 +165,7 @@ def _shape(key: str, law: str | None) -> Parameter:
     return Parameter(key, shape.start, shape.low, shape.high)
 
 
-def value_of(key: str, setup: SetUp, given: str = "--free") -> float:
+def value_of(key: str, setup: Setup, given: str = "--free") -> float:
     """The value of a key in a set-up, SI; raises InputError, which says that the key came from `given`."""
     tissue, tool, support = setup
     head, _, name = key.partition(".")
@@ -205,7 +204,7 @@ def _no_key(key: str, tissue: Tissue, given: str = "--free") -> InputError:
     )
 
 
-def with_values(setup: SetUp, values: Values, law: str | None = None) -> SetUp:
+def with_values(setup: Setup, values: Values, law: str | None = None) -> Setup:
     """A set-up with values (SI) put in by their keys; values of relaxation are left out, a fit has them by itself."""
     tissue, tool, support = setup
     layers = [_changed_layer(layer, values) for layer in tissue.layers]
@@ -213,7 +212,7 @@ def with_values(setup: SetUp, values: Values, law: str | None = None) -> SetUp:
     if law is not None:
         tissue = with_law(tissue, law, values.get(LAW_SHAPES[law].key, LAW_SHAPES[law].start))
     constants = [_own_constants(layer, values) for layer in tissue.layers]
-    changed: SetUp = (tissue.model_copy(update={"layers": tuple(constants)}), tool, support)
+    changed: Setup = (tissue.model_copy(update={"layers": tuple(constants)}), tool, support)
     for key in (THICKNESS, *SETUP_KEYS):
         if key in values:
             told = 1.0 if key == THICKNESS else value_of(key, changed)

@@ -275,10 +275,11 @@ class Identified:
 
     @property
     def _unsettled(self) -> str:
+        fewer = "fewer free keys, " if len(self.free) > 1 else ""
         return (
             f"the fit did not settle in {self.found.rounds} rounds: pressed with the values where it stopped, the "
             f"model's force still differs by {100 * self.found.disagreement:.2g} % from the one that they were fitted "
-            f"with (allowed {100 * AGREES:.2g} %). What may help: fewer free keys, told values nearer to the "
+            f"with (allowed {100 * AGREES:.2g} %). What may help: {fewer}told values nearer to the "
             "specimen's (--set), [fit.bounds], or trials that press less deep"
         )
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from benchmark.errors import InputError
-from benchmark.files import Session, Tool
+from benchmark.files import Session, Setup, Tool
 from benchmark.files.schema import nearest
 from benchmark.files.sessions.fit_table import FitTable
 from benchmark.files.tool import TOUCHING
@@ -24,7 +24,6 @@ from benchmark.identification.parameters.free_parameters import (
     RELAXATION,
     Parameter,
     Prior,
-    SetUp,
     dimension_of_key,
     parameters_of,
     value_of,
@@ -41,7 +40,7 @@ from benchmark.identification.trial_data import LEAST_ROWS, TrialData
 from benchmark.identification.trial_features import contact_range
 from benchmark.response.force_curve import Array
 from benchmark.response.nearest_curve import tool_name
-from benchmark.response.ramp import Ramp, Setup
+from benchmark.response.ramp import Ramp
 from benchmark.response.ramp_table import EVERYWHERE, CameraView
 from benchmark.response.setup_change import RADIUS, THICKNESS
 
@@ -101,7 +100,7 @@ def assembled(bases: Sequence[FittedBase], wish: FitTable) -> Assembled:
         A key that a specimen does not have, or values that cannot be used.
     """
     discrepancy = _discrepancy(wish)
-    check_exact(wish.exact, _setups(bases), "[fit] exact")
+    check_exact(wish.exact, [setup for base in bases for setup in base.session.setups], "[fit] exact")
     presses, trials, keys, warnings = _presses(bases, wish)
     if not trials:
         raise InputError("no trial is left for a fit of parameters: none reaches into the model's range")
@@ -112,10 +111,6 @@ def assembled(bases: Sequence[FittedBase], wish: FitTable) -> Assembled:
     own = [bases[specimen].fit.trial(*key) for specimen, key in keys]
     touches, zeros = np.array([one.onset for one in own]), np.array([one.zero for one in own])
     return Assembled(problem, touches, zeros, warnings)
-
-
-def _setups(bases: Sequence[FittedBase]) -> list[SetUp]:
-    return [(base.session.specimen, one.tool, one.support) for base in bases for one in base.session.trials]
 
 
 def _discrepancy(wish: FitTable) -> float:
@@ -155,7 +150,7 @@ def _presses(
     presses: list[Press] = []
     trials, keys, warnings = [], [], []
     for specimen, base in enumerate(bases):
-        for setup in dict.fromkeys((trial.tool, trial.support) for trial in base.session.trials):
+        for setup in base.session.setups:
             fitted = _trials_of(base, setup)
             if not fitted:
                 continue
@@ -192,12 +187,12 @@ def _trials_of(base: FittedBase, setup: Setup) -> list[TrialData]:
     """The trials of a set-up that the first fit could use."""
     used = {each.key for each in base.fit.trials}
     pairs = zip(base.session.trials, base.trials, strict=True)
-    return [data for trial, data in pairs if (trial.tool, trial.support) == setup and data.key in used]
+    return [data for trial, data in pairs if base.session.setup(trial) == setup and data.key in used]
 
 
 def _press(specimen: int, base: FittedBase, setup: Setup, wanted: float) -> tuple[Press, list[str]]:
     """A press under the tool that the model follows deepest, to the depth wanted (m), or as deep as it goes."""
-    told, support = setup
+    tissue, told, support = setup
     tool, reach, said = told, wanted, []
     followed = base.followed.get(setup, ())
     whole = [(other, ramp) for other, ramp in followed if ramp.failure is None]
@@ -209,10 +204,10 @@ def _press(specimen: int, base: FittedBase, setup: Setup, wanted: float) -> tupl
             said.append(f"parameters are fitted to the first {1e3 * reach:.3g} mm: deeper the model does not go")
         if tool != told:
             said.append(f"parameters are fitted with {tool_name(tool, told)} in the place of the tool as told")
-    return Press(specimen, base.session, (base.session.specimen, tool, support), reach), said
+    return Press(specimen, base.session, (tissue, tool, support), reach), said
 
 
-def check_wish(wish: FitTable, setup: SetUp) -> None:
+def check_wish(wish: FitTable, setup: Setup) -> None:
     """Refuse keys and values that a fit to presses of a set-up would refuse, before anything is computed.
 
     A tool's edge is left to the fit, which may give one to a tool that was told without.
@@ -229,7 +224,7 @@ def check_wish(wish: FitTable, setup: SetUp) -> None:
                 _informed(one, wish)
 
 
-def check_exact(keys: Iterable[str], setups: Iterable[SetUp], place: str) -> None:
+def check_exact(keys: Iterable[str], setups: Iterable[Setup], place: str) -> None:
     """Refuse keys of `exact` that are told by no set-up; raises InputError that begins with the place."""
     known = list(dict.fromkeys(key for setup in setups for key in _tellable(setup, set())))
     for key in keys:
@@ -265,7 +260,7 @@ def _free(bases: Sequence[FittedBase], presses: Sequence[Press], wish: FitTable)
     return tuple(out)
 
 
-def _fixed(setup: SetUp, wish: FitTable) -> dict[str, float]:
+def _fixed(setup: Setup, wish: FitTable) -> dict[str, float]:
     """Values that `[fit.fixed]` states, SI; raises InputError for a key that the set-up does not have."""
     for key in wish.fixed:
         value_of(key, setup, "[fit.fixed]")
@@ -316,18 +311,23 @@ def _deviation(key: str, value: float, share: float) -> float:
 
 
 def _told(presses: Sequence[Press], wish: FitTable, free: set[str]) -> tuple[Parameter, ...]:
-    """What was told of set-ups and is not free, as parameters with a prior."""
+    """What was told of set-ups and is not free, as parameters with a prior.
+
+    Parts of one session, which differ in height, have but their thickness of their own.
+    """
     if "all" in wish.exact:
         return ()
+    one_session = len({press.session.folder for press in presses}) == 1
     out: dict[tuple[str, object], Parameter] = {}
     taken = {*free, *wish.exact, *wish.fixed}
     for press in presses:
-        stated = press.session.uncertainties(*press.setup[1:])
+        stated = press.session.uncertainties(press.setup)
         for key in _tellable(press.setup, free):
             if key in taken or (key == EDGE_RADIUS and key not in stated and not _edge_assumed(press)):
                 continue
             of_tool = key in (RADIUS, EDGE_RADIUS)
-            tool, specimen = (press.setup[1], None) if of_tool else (None, press.specimen)
+            common = of_tool or (one_session and not key.endswith(f".{THICKNESS}"))
+            tool, specimen = press.setup[1] if of_tool else None, None if common else press.specimen
             value = value_of(key, press.setup)
             share = stated.get(key)
             spread = _deviation(key, value, share) if share is not None else _unstated(key)
@@ -354,7 +354,7 @@ def _unstated(key: str) -> float:
     return UNSTATED.get(key) or UNSTATED[key.rpartition(".")[2]]
 
 
-def _tellable(setup: SetUp, free: set[str]) -> Iterator[str]:
+def _tellable(setup: Setup, free: set[str]) -> Iterator[str]:
     """Keys of a set-up that were told and move the force."""
     tissue, tool, support = setup
     yield "support.specimen_radius" if support.cylinder else RADIUS

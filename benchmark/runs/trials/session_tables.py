@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from benchmark.errors import InputError, SolverError
-from benchmark.files import Session, Tool
+from benchmark.files import Session, Setup, Tool
 from benchmark.models import StepProgress, UncoveredError, prepare
 from benchmark.models.model_result import OnStep
 from benchmark.response import CameraView, FaceField, ForceCurve, Neighbour, Ramp, RampTable, depth_ramp
 from benchmark.response.nearest_curve import NearestCurve, continued, nearest_curve
-from benchmark.response.ramp import Setup, setup_scenario
+from benchmark.response.ramp import setup_scenario
 from benchmark.response.setup_change import THICKNESS, changed_setup
 from benchmark.runs.options import Advance, Listener
 
@@ -44,7 +44,7 @@ class BaseCurves:
 
 
 def base_curves(session: Session, depths: Mapping[Setup, float], listener: Listener) -> BaseCurves:
-    """Compute a curve for each tool and support, deep enough for the `depths` (m) asked for.
+    """Compute a curve for each set-up, deep enough for the `depths` (m) asked for.
 
     Where the finite elements stop, or do not cover the tool, the curve goes on by the nearest tools that they follow,
     and then by its last power of the depth; the warnings say so.
@@ -65,17 +65,18 @@ def base_curves(session: Session, depths: Mapping[Setup, float], listener: Liste
 
 
 def _followed(session: Session, setup: Setup, depth: float, on_step: OnStep) -> NearestCurve:
-    """The curve of one tool and support, by the nearest tools where the solver does not follow it."""
+    """The curve of one set-up, by the nearest tools where the solver does not follow it."""
     steps = min(max(math.ceil(depth / STEP), LEAST_STEPS), MOST_STEPS)
+    tissue, told, support = setup
 
     def ramp_of(tool: Tool) -> Ramp:
-        model = prepare("fem", setup_scenario(session, session.specimen, (tool, setup[1])), beyond_limits=False)
+        model = prepare("fem", setup_scenario(session, (tissue, tool, support)), beyond_limits=False)
         return depth_ramp(model, depth, steps, on_step)
 
     try:
-        return nearest_curve(setup[0], ramp_of)
+        return nearest_curve(told, ramp_of)
     except SolverError as error:
-        thick = session.specimen.thickness
+        thick = tissue.thickness
         deeper = f"; asked for {1e3 * depth:.4g} mm of a specimen {1e3 * thick:.4g} mm thick: is another unit meant?"
         raise SolverError(f"session {session.name}: {error}{deeper if depth > thick else ''}") from None
 
@@ -83,7 +84,7 @@ def _followed(session: Session, setup: Setup, depth: float, on_step: OnStep) -> 
 def session_sheets(
     session: Session, depths: Mapping[Setup, float], view: CameraView, listener: Listener
 ) -> tuple[dict[Setup, RampTable], tuple[str, ...]]:
-    """Compute a sheet for each tool and support over a hole; others, and what the solver cannot follow, are said.
+    """Compute a sheet for each set-up over a hole; others, and what the solver cannot follow, are said.
 
     Parameters
     ----------
@@ -97,7 +98,7 @@ def session_sheets(
     sheets, warnings = {}, []
     with listener.progress(f"{session.name}: lower face of the specimen") as advance:
         for setup, depth in depths.items():
-            if setup[1].kind != "hole":
+            if setup[2].kind != "hole":
                 warnings.append("the markers of trials without a hole are not fitted: their face is held")
                 continue
             try:
@@ -113,10 +114,10 @@ def _sheet(
     session: Session, setup: Setup, thicker: float, depth: float, advance: Advance
 ) -> tuple[ForceCurve, FaceField]:
     """Force and lower face with all layers thicker by a share; raises SolverError."""
-    tissue, tool, support = changed_setup(session.specimen, *setup, THICKNESS, thicker)
-    task = f"{tissue.name}, thicker" if thicker else tissue.name
-    scenario = setup_scenario(session, tissue, (tool, support))
-    model = prepare("fem", scenario, every_field=True, beyond_limits=False)
+    changed = changed_setup(*setup, THICKNESS, thicker)
+    name = changed[0].name
+    task = f"{name}, thicker" if thicker else name
+    model = prepare("fem", setup_scenario(session, changed), every_field=True, beyond_limits=False)
     ramp = depth_ramp(model, depth, FACE_STEPS, _told(advance, task), face=True)
     face = ramp.face
     if ramp.failure is not None or face is None:

@@ -106,7 +106,7 @@ def _sound(session: Session, trial: Trial, motion: MarkerMotion, placed: Placed)
     if depth <= 0.0:
         raise InputError("the radius is largest where the tool does not touch: nothing moved in this film")
     force = float(np.interp(largest.time, trial.table.time, trial.table.force))
-    layers = session.specimen.layers
+    layers = session.setup(trial)[0].layers
     hole, tool = trial.support.hole_radius or 3.0 * trial.tool.radius, trial.tool.radius
     tension = force * math.log(hole / tool) / (2.0 * math.pi * depth)
     mass = sum(layer.density * layer.thickness for layer in layers)

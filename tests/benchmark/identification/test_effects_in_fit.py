@@ -32,7 +32,8 @@ def _session(trials: tuple[TrialData, ...]) -> SimpleNamespace:
     tool = SimpleNamespace(radius=5e-3, contact="rigid_bonded", edge_radius=None)
     rig = {"tool": tool, "support": SimpleNamespace(kind="bonded")}
     measured = [SimpleNamespace(name=t.name, condition=t.condition, **rig) for t in trials]
-    return SimpleNamespace(specimen=load_tissue("ecoflex_00_30"), trials=measured)
+    tissue = load_tissue("ecoflex_00_30")
+    return SimpleNamespace(specimen=tissue, trials=measured, setup=lambda trial: (tissue, trial.tool, trial.support))
 
 
 def test_the_effect_no_longer_softens_the_fit() -> None:

@@ -46,7 +46,7 @@ class Quiet:
 def model():
     """The shipped specimen and its sheet under the phantom's tool, with the specimen's own (not the hidden) modulus."""
     session = load_session(Path(SHIPPED) / "phantom")
-    setup = (session.tool, session.support)
+    setup = (session.specimen, session.tool, session.support)
     listener: Listener = Quiet()
     curve = base_curves(session, {setup: DEEP}, listener).curves[setup]
     sheets, warnings = session_sheets(session, {setup: DEEP}, CameraView(70e-3), listener)

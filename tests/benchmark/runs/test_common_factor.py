@@ -18,15 +18,11 @@ def plain_fit(toy):
 
     def fitted(truth, tools=(0, 1)):
         data = [(k, layered.toy_trial(n, k, f"t{n}", truth=truth)) for k in tools for n in range(5)]
-        trials = [SimpleNamespace(tool=layered.TOOLS[k], support=layered.SUPPORT) for k, _ in data]
-        told = SimpleNamespace(
-            name="toy",
-            specimen=layered.TISSUE,
-            trials=trials,
-            uncertainties=lambda tool, support: {},
-            synthetic=True,
-            settings={},
-        )
+        told = layered.ToySession()
+        told.trials = [
+            SimpleNamespace(tool=layered.TOOLS[k], support=layered.SUPPORT, condition=one.condition, name=one.name)
+            for k, one in data
+        ]
         rows = [one for _, one in data]
         return SimpleNamespace(
             session=told, fit=fit_session(rows, layered.TISSUE.layers), trials=rows, followed={}, filmed=None, sheets={}

@@ -9,8 +9,7 @@ from benchmark.files import load_scenario
 from benchmark.models import NOTHING, scenario_drive
 from benchmark.runs.options import RunOptions
 from benchmark.runs.report.run_page import run_verdict
-from benchmark.runs.scenario_run import run_scenario
-from benchmark.runs.small_strain import NOTE, beside_small_strain
+from benchmark.runs.scenario_run import SMALL_STRAIN, beside_small_strain, run_scenario
 
 QUICK = {"fem.mesh": "coarse", "load.observations": "10"}
 OPTIONS = RunOptions(repeats=0)
@@ -21,7 +20,7 @@ pytestmark = pytest.mark.usefixtures("in_threads")
 def test_a_deep_press_says_how_far_small_strain_is_off():
     record = run_scenario(load_scenario("skin-5N", QUICK), OPTIONS, QUIET)
     assert record.pair.wave.result is not None
-    note = record.pair.wave.result.notes[NOTE]
+    note = record.pair.wave.result.notes[SMALL_STRAIN]
     errors = [float(value) for value in re.findall(r"([+-][0-9.]+) %", note)]
     assert len(errors) == 3
     assert all(15.0 < error < 40.0 for error in errors)
@@ -38,14 +37,14 @@ def test_small_strain_finite_elements_need_no_note():
     scenario = load_scenario("skin-5N", QUICK | {"fem.kinematics": "linear"})
     record = run_scenario(scenario, OPTIONS, QUIET, own=NOTHING)
     assert record.pair.wave.result is not None
-    assert NOTE not in record.pair.wave.result.notes
+    assert SMALL_STRAIN not in record.pair.wave.result.notes
 
 
 def test_under_friction_there_is_none_and_the_run_goes_on():
     rough = {"tool.contact": "rigid_frictional", "physics.friction_coefficient": "0.3", "tool.edge_radius": "2 mm"}
     record = run_scenario(load_scenario("skin-5N", QUICK | rough), OPTIONS, QUIET)
     assert record.pair.wave.result is not None
-    assert NOTE not in record.pair.wave.result.notes
+    assert SMALL_STRAIN not in record.pair.wave.result.notes
     assert any("the way back" in one for one in record.pair.wave.result.warnings)
 
 

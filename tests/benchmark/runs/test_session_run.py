@@ -33,7 +33,7 @@ def test_a_model_that_remembers_the_trials_before_is_pointed_out(monkeypatch, re
 def test_what_a_model_writes_past_python_beside_trials_is_not_on_stdout(monkeypatch, capfd) -> None:
     """It stood before the object of `--json`."""
     monkeypatch.setattr(session_run, "_wave", lambda *_: os.write(1, b"loud"))
-    session = SimpleNamespace(trials=[SimpleNamespace(tool="flat", support="base")])
+    session = SimpleNamespace(trials=["a trial"], setup=lambda _: ("gel", "flat", "base"))
     found = SimpleNamespace(session=session, fit=SimpleNamespace(trials=[]), trials=[SimpleNamespace(key="t0")])
-    assert session_run._predictions(found, None, session_run.NOTHING) == ((), ())
+    assert session_run._predictions(found, session_run.NOTHING) == ((), ())
     assert capfd.readouterr() == ("", "loud")

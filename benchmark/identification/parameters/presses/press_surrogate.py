@@ -14,13 +14,12 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from benchmark.errors import SolverError
-from benchmark.files import Session
+from benchmark.files import Session, Setup
 from benchmark.identification.parameters.free_parameters import (
     COMMON,
     MODULUS,
     POISSON,
     Parameter,
-    SetUp,
     Values,
     value_of,
     with_values,
@@ -116,7 +115,7 @@ class Press:
 
     specimen: int
     session: Session
-    setup: SetUp
+    setup: Setup
     depth: float
     mesh_error: float | None = None
     rings: MarkerRings | None = None
@@ -204,7 +203,7 @@ def _logarithmic(ramp: DifferentiatedRamp, chain: Mapping[str, float]) -> Array:
     return np.asarray(CubicSpline(ramp.depth, np.append(2.0 * share[0] - share[1], share))(grid))
 
 
-def _chain(parameter: Parameter, values: Values, setup: SetUp) -> dict[str, float]:
+def _chain(parameter: Parameter, values: Values, setup: Setup) -> dict[str, float]:
     """Keys of the ramp and by how much each changes with the parameter's coordinate, in the ramp's own terms."""
     key, last = parameter.key, parameter.key.rpartition(".")[2]
     if key == COMMON:
@@ -229,7 +228,7 @@ def _size(key: str, value: float) -> float:
     return value if is_absolute(key) else 1.0
 
 
-def _shape_chain(layer: str, shape: float, setup: SetUp) -> dict[str, float]:
+def _shape_chain(layer: str, shape: float, setup: Setup) -> dict[str, float]:
     """The chain of a law's constant of shape in one layer, at a fixed shear modulus."""
     own = f"{layer}.hyperelastic"
     match setup[0].layer(layer).hyperelastic.law:

@@ -48,9 +48,9 @@ def test_every_part_can_be_taken_away(given) -> None:
 
 
 def test_what_is_taken_away(given, session: Session) -> None:
-    tool, support = session.trials[0].tool, session.trials[0].support
-    assert session.uncertainties(tool, support)
-    assert given("stated_uncertainties")[0].uncertainties(tool, support) == {}
+    (setup,) = session.setups
+    assert session.uncertainties(setup)
+    assert given("stated_uncertainties")[0].uncertainties(setup) == {}
     assert given("stated_uncertainties")[0].fingerprint == session.fingerprint
     assert session.camera is not None
     assert given("print_offsets")[0].camera.print_scatter == pytest.approx(0.0, abs=1e-8)

@@ -99,7 +99,7 @@ def test_a_condition_with_a_tool_of_its_own_is_an_unseen_tool(stiffened: Fit) ->
 
 def test_derivatives_by_a_term_are_those_of_its_presses(pad: Session) -> None:
     specimen = FemSpecimen(pad, (), (STIFFENING,))
-    setup = (pad.trials[0].tool, pad.trials[0].support)
+    setup = pad.setups[0]
     here = {C20: 0.8, C30: 0.05}
     table = specimen.table(setup, 2e-3, here)
     more = specimen.pressed(setup, 2e-3, {**here, C20: 0.81}, {})
@@ -111,7 +111,7 @@ def test_derivatives_by_a_term_are_those_of_its_presses(pad: Session) -> None:
 
 def test_a_pretension_is_stated_in_the_session(pad: Session) -> None:
     specimen = FemSpecimen(pad, (), (PRETENSION,))
-    setup = (pad.trials[0].tool, pad.trials[0].support)
+    setup = pad.setups[0]
     tense, loose = (specimen.pressed(setup, 1e-3, {"physics.pretension": stress}, {}) for stress in (5e3, 1.0))
     assert tense.force[-1] > 1.01 * loose.force[-1]
 

@@ -87,6 +87,26 @@ def test_depth_over_height_is_compared_where_specimens_differ(session) -> None:
     assert any("others': trial_00, trial_01" in text for text in unknown.warnings)
 
 
+def test_heights_that_fall_apart_are_conditions_with_a_base_of_their_own(session) -> None:
+    """Cylinders of 8, 12 and 16 mm stood against one base of 12."""
+    heights = (16.0, 8.0, 12.0, 8.05, 12.0, 15.8, 16.1)
+    study = prepare(session([press(2.0, height=height) for height in heights]), 100)
+    assert [each.name for each in study.conditions] == ["slow_8.025mm", "slow_12mm", "slow_16mm"]
+    assert [each.trials for each in study.conditions][2] == ("trial_00", "trial_05", "trial_06")
+    thick = [1e3 * each.specimen.thickness for each in study.conditions]
+    assert thick == pytest.approx([8.025, 12.0, 16.0], rel=1e-2)
+    assert [1e3 * each.around.thickness for each in study.conditions] == pytest.approx(thick)
+    assert any("of several heights, and taken for slow_8.025mm (2 trials)" in each for each in study.warnings)
+
+
+def test_a_height_of_a_single_trial_stays_with_the_others_and_is_said(session) -> None:
+    made = session([press(2.0, height=height) for height in (8.0, 8.0, 8.1, 8.0, 12.0)])
+    study = prepare(made, 100)
+    assert [each.name for each in study.conditions] == ["slow"]
+    assert study.conditions[0].specimen == made.specimen
+    assert "condition slow: its specimens are 8 to 12 mm high, and all held against one base" in study.warnings
+
+
 @pytest.mark.parametrize("speed", [8.0, 0.2])
 def test_a_single_trial_of_another_speed_is_set_aside_by_name(session, speed) -> None:
     made = session([press(3.0), press(3.1), press(2.9), press(3.0, speed=speed), press(3.0)])

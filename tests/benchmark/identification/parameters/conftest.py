@@ -33,8 +33,20 @@ class ToySession:
 
     name, folder, synthetic, fingerprint, specimen = "toy", Path(), True, "0" * 64, TISSUE
 
-    def uncertainties(self, tool, support):
+    settings, trials = {}, ()
+
+    def uncertainties(self, setup):
         return {}
+
+    def setup(self, trial):
+        return TISSUE, trial.tool, trial.support
+
+    @property
+    def setups(self):
+        return tuple(dict.fromkeys(self.setup(trial) for trial in self.trials))
+
+    def by_height(self):
+        return [self]
 
 
 def powers(radius, depth):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmark.errors import SolverError
-from benchmark.files import Tool, load_session, scaled_tissue
+from benchmark.files import Tool, load_session
 from benchmark.models import prepare
 from benchmark.models.prepare import scenario_drive
 from benchmark.response.fem_table import fem_or_wave_table
@@ -60,7 +60,7 @@ def pad(tmp_path):
 
 def test_a_flat_tool_that_slides_is_followed_by_the_nearest_tools(pad) -> None:
     session = pad()
-    setup = (session.trials[0].tool, session.trials[0].support)
+    (setup,) = session.setups
     found = base_curves(session, {setup: 3.5e-3}, Quiet())
     curve = found.curves[setup]
     assert curve.depth[-1] == pytest.approx(3.5e-3)
@@ -71,14 +71,14 @@ def test_a_flat_tool_that_slides_is_followed_by_the_nearest_tools(pad) -> None:
     assert "the tool as told is followed to" in said
     assert "goes on with the growth of an edge of 1.25 mm" in said
     tools = [tool for tool, _ in found.followed[setup]]
-    assert tools[0] == setup[0]
+    assert tools[0] == setup[1]
     assert len(tools) > 1
 
 
 def test_a_press_through_the_specimen_is_asked_about(pad) -> None:
     """Micrometres under `depth_mm` ended in how far the elements come, without the depth that was asked for."""
     session = pad('contact = "rigid_bonded"')
-    setup = (session.trials[0].tool, session.trials[0].support)
+    (setup,) = session.setups
     with pytest.raises(SolverError, match=r"asked for 3300 mm of a specimen 6 mm thick: is another unit meant\?"):
         base_curves(session, {setup: 3.3}, Quiet())
 
@@ -86,9 +86,9 @@ def test_a_press_through_the_specimen_is_asked_about(pad) -> None:
 @pytest.mark.slow
 def test_the_discovery_has_a_base_where_neither_model_covers_the_tool(pad) -> None:
     session = pad()
-    setup = (session.trials[0].tool, session.trials[0].support)
+    (setup,) = session.setups
     curve = base_curves(session, {setup: 3.3e-3}, Quiet()).curves[setup]
-    table = fem_or_wave_table(session)(session.specimen, *setup, 3.3e-3)
+    table = fem_or_wave_table(session)(*setup, 3.3e-3)
     shallow = (table.depth > 0.3e-3) & (table.depth < 1e-3)
     assert table.force[shallow] == pytest.approx(curve(table.depth[shallow]), rel=0.03)
     assert (np.diff(table.force) > 0.0).all()
@@ -98,8 +98,8 @@ def test_the_discovery_has_a_base_where_neither_model_covers_the_tool(pad) -> No
 
 def test_a_sphere_is_followed_and_differentiated(pad) -> None:
     session = pad('contact = "rigid_frictionless"\nedge_radius = "5 mm"')
-    setup = (session.trials[0].tool, session.trials[0].support)
-    table = fem_or_wave_table(session)(session.specimen, *setup, 1.5e-3)
+    (setup,) = session.setups
+    table = fem_or_wave_table(session)(*setup, 1.5e-3)
     assert not table.note
     middle = table.depth.searchsorted(0.6e-3)
     power = np.log(table.force[-1] / table.force[middle]) / np.log(table.depth[-1] / table.depth[middle])
@@ -111,11 +111,10 @@ def test_a_sphere_is_followed_and_differentiated(pad) -> None:
 @pytest.mark.slow
 def test_a_run_takes_the_tool_that_carries_the_trials_force(pad) -> None:
     fitted = fit_trials(pad().folder, None, {"fem.mesh": "coarse"}, Quiet())
-    told, warnings = session_scenario(fitted, fitted.session.specimen, as_told=True)
+    told, warnings = session_scenario(fitted, as_told=True)
     assert told.tool.edge_radius == pytest.approx(0.5e-3)
     assert not warnings
-    tissue = scaled_tissue(fitted.session.specimen, fitted.stiffness_factor, "fitted")
-    scenario, (said, *_) = session_scenario(fitted, tissue, as_told=False)
+    scenario, (said, *_) = session_scenario(fitted, as_told=False)
     assert scenario.tool != told.tool
     assert "the finite elements do not follow the tool as told to" in said
     drive = scenario_drive(scenario)
