@@ -10,20 +10,38 @@ from __future__ import annotations
 
 import copy
 import ctypes
+import os
+import sys
 import weakref
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from types import MappingProxyType
 from typing import TypeAlias
 
 import numpy as np
-import pypardiso
 import scipy.sparse as sp
 from numpy.typing import DTypeLike, NDArray
-from pypardiso.pardiso_wrapper import PyPardisoError
 
 from fem.arrays import FloatArray, IndexArray
 from fem.linear_solver.symmetric import DiagonalScaling, SingularMatrixError, checked_solution, flexible_gmres
+
+MKL = "PYPARDISO_MKL_RT"
+
+
+def _tell_where_mkl_is() -> None:
+    """Where the MKL lies beside this Python, unless somebody said; pypardiso's own search takes up to half a second.
+
+    It asks the compiler and the linker, and then looks through every folder of the installation.
+    """
+    for path in sorted(Path(sys.prefix, "lib").glob("libmkl_rt.so*"))[:1]:
+        os.environ.setdefault(MKL, str(path))
+
+
+_tell_where_mkl_is()
+
+import pypardiso  # noqa: E402 - after it was told
+from pypardiso.pardiso_wrapper import PyPardisoError  # noqa: E402
 
 POSITIVE_DEFINITE, INDEFINITE = 2, -2
 ANALYSE, FACTORISE, SOLVE = 11, 22, 33
