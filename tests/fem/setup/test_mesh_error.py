@@ -185,7 +185,7 @@ def test_where_larger_elements_fold_the_error_is_told_at_half_of_the_load(ramp):
     layers = tuple(
         fem.Layer(f"{n}", h, 1000.0, fem.NeoHookean(E, 0.48)) for n, (h, E) in enumerate(zip(SKIN, SOFT, strict=True))
     )
-    tool = fem.Tool(5e-3, "rigid_frictionless", edge_radius=1.5e-3)
+    tool = fem.Tool(5e-3, "rigid_frictionless", edge_radius=1e-3)
     problem = fem.Problem(layers, tool, fem.Support("bonded"), "finite")
     solution, found = judged(problem, ramp("force", 5.0, 10))
     assert solution.complete
