@@ -65,17 +65,20 @@ def test_a_prediction_of_high_order_that_fails_is_followed_by_a_plain_one(proble
 
 @pytest.mark.parametrize(("contact", "friction"), [("rigid_frictionless", None), ("rigid_frictional", 0.3)])
 def test_a_sphere_meets_soft_tissue_by_its_force_as_by_its_depth(contact, friction):
-    """Its tip alone touches at rest, where Newton's first correction of any force goes far too deep."""
+    """Its tip alone touches at rest, where Newton's first correction of any force goes far too deep.
+
+    A force at which no node is about to touch: there two states of equilibrium are up to 0.1 % apart.
+    """
     soft = (fem.Layer("gel", 12e-3, 1000.0, fem.NeoHookean(20e3, 0.45)),)
     tool = fem.Tool(5e-3, contact, 5e-3, friction_coefficient=friction)
     coarse = fem.Discretisation("coarse")
     model = fem.prepare(fem.Problem(soft, tool, fem.Support("bonded"), discretisation=coarse))
-    pressed = model.run(fem.Load("force", np.array([0.5, 1.0]), np.array([0.1, 0.2])))
+    pressed = model.run(fem.Load("force", np.array([0.5, 1.0]), np.array([0.075, 0.15])))
     assert pressed.complete
     parts = np.linspace(0.1, 1.0, 10)
     lowered = model.run(fem.Load("depth", parts, parts * pressed.depth[-1]))
     assert lowered.complete
-    assert lowered.force[-1] == pytest.approx(0.2, rel=1e-6 if friction is None else 1e-2)
+    assert lowered.force[-1] == pytest.approx(0.15, rel=1e-6 if friction is None else 1e-2)
 
 
 def gel_with_friction():
