@@ -177,7 +177,7 @@ class _Layout:
     def _radial(self, position: float, size: float) -> Sizing:
         places = [position + (share - 1.0) * self.radius for share in self.resolution.gather]
         growth, far = self.resolution.growth, self.extent.far
-        edges = [Feature(place, size, growth, far, near=self.radius - place) for place in places]
+        edges = [Feature(place, size, growth, far, near=max(self.radius - place, 0.0)) for place in places]
         under = (self.radius, self.resolution.under * self.radius)
         return Sizing((*edges, *self.extent.radial), (under,))
 
