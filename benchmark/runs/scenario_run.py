@@ -10,7 +10,7 @@ import numpy as np
 from benchmark.comparison import ComparisonError
 from benchmark.errors import TissuebenchError
 from benchmark.exchange import export_text
-from benchmark.files import Scenario
+from benchmark.files import Scenario, Tool
 from benchmark.models import NOTHING, Array, Drive, ModelResult, Own, StepProgress, UncoveredError, scenario_drive
 from benchmark.models.own_models import FAR_APART
 from benchmark.models.prepare import small_strain_deflection, took_finite_strain
@@ -21,6 +21,8 @@ from benchmark.runs.trials.measured import MeasuredComparison
 from benchmark.side_by_side import NAMES, SideBySide, run_side_by_side
 from benchmark.side_by_side.parameter_bands import ParameterBands, parameter_bands
 
+ROUND = 0.25
+"""Edge radius over tool radius from which a flat end is another tool."""
 SMALL_STRAIN = "small strain"
 """The note of a wave result on what small strain would have said."""
 
@@ -69,6 +71,7 @@ def run_scenario(
     layers = len(scenario.tissue.layers)
     fem, wave = (deflections(run.result, drive.time.size, layers) for run in (pair.fem, pair.wave))
     said = [*warnings, *unknown, *_too_coarse(scenario, pair.fem.result)]
+    said += [] if own.wave is not None or scenario.fem.kinematics == "linear" else flat_wave(scenario.tool)
     if own.wave is not None or own.reference is not None:
         said += _far_apart(scenario, pair, own, fem, wave)
     try:
@@ -92,6 +95,14 @@ def run_scenario(
         exported=exported,
         bands=bands,
     )
+
+
+def flat_wave(tool: Tool) -> tuple[str, ...]:
+    """Say that the wave model has a flat end where the tool's edge is a good part of its radius."""
+    edge = tool.edge_radius or 0.0
+    if edge < ROUND * tool.radius:
+        return ()
+    return (f"the wave model has a flat end: the tool's edge of {1e3 * edge:.3g} mm is in the finite elements alone",)
 
 
 def _too_coarse(scenario: Scenario, result: ModelResult | None) -> tuple[str, ...]:

@@ -35,8 +35,6 @@ OBSERVATIONS = 100
 STEPS = 60
 SAFE = 0.8
 """Share of what a tool carries to which both models press where none carries the trials' force."""
-ROUND = 0.25
-"""Edge radius over tool radius from which a flat end is another tool."""
 REACH = 1.2
 """The wave's elastic law is ramped this much deeper than the trial."""
 
@@ -62,7 +60,6 @@ def run_session(
     scenario, other = session_scenario(found, as_told=own.reference is not None)
     predictions, said = _predictions(found, own)
     measured, warnings = MeasuredComparison(session, fit, predictions, found.filmed), (*found.warnings, *said, *other)
-    warnings += () if own.wave is not None else flat_wave(scenario.tool)
     return run_scenario(scenario, options, listener, name=session.name, measured=measured, warnings=warnings, own=own)
 
 
@@ -94,14 +91,6 @@ def session_scenario(found: FittedSession, *, as_told: bool) -> tuple[Scenario, 
     name, most = tool_name(strongest, told), SAFE * min(forces[strongest], peak)
     said = f"the finite elements do not follow the trials' median peak of {peak:.3g} N: both models have {name}"
     return _press(session, tissue, strongest, support, most), (f"{said}, to {most:.3g} N",)
-
-
-def flat_wave(tool: Tool) -> tuple[str, ...]:
-    """Say that the wave model has a flat end where the tool's edge is a good part of its radius."""
-    edge = tool.edge_radius or 0.0
-    if edge < ROUND * tool.radius:
-        return ()
-    return (f"the wave model has a flat end: the tool's edge of {1e3 * edge:.3g} mm is in the finite elements alone",)
 
 
 def _press(session: Session, tissue: Tissue, tool: Tool, support: Support, peak: float) -> Scenario:

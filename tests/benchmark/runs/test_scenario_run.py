@@ -1,15 +1,15 @@
-"""What the wave of small strain would have said, beside a run that took finite strain."""
+"""What a run says of the wave beside the finite elements: small strain, a flat end."""
 
 import re
 
 import pytest
 
 from benchmark.cli.console import Console
-from benchmark.files import load_scenario
+from benchmark.files import Tool, load_scenario
 from benchmark.models import NOTHING, scenario_drive
 from benchmark.runs.options import RunOptions
 from benchmark.runs.report.run_page import run_verdict
-from benchmark.runs.scenario_run import SMALL_STRAIN, beside_small_strain, run_scenario
+from benchmark.runs.scenario_run import SMALL_STRAIN, beside_small_strain, flat_wave, run_scenario
 
 QUICK = {"fem.mesh": "coarse", "load.observations": "10"}
 OPTIONS = RunOptions(repeats=0)
@@ -59,3 +59,9 @@ def test_a_mesh_that_is_farther_off_than_the_models_may_be_apart_is_said():
     assert f"estimated {off:.2g} % off, more than the 0.0001 % within which" in text
     assert text.endswith("--set fem.mesh=fine")
     assert said(0.01 * off * 1.01) == (off, [])
+
+
+def test_a_wave_with_a_flat_end_is_said_under_a_round_tool() -> None:
+    assert "flat end" in flat_wave(Tool(radius=5e-3, contact="rigid_frictionless", edge_radius=5e-3))[0]
+    assert not flat_wave(Tool(radius=5e-3, contact="rigid_frictionless", edge_radius=0.5e-3))
+    assert not flat_wave(Tool(radius=5e-3, contact="rigid_bonded"))

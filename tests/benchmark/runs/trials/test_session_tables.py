@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from benchmark.errors import SolverError
-from benchmark.files import Tool, load_session
+from benchmark.files import load_session
 from benchmark.models import prepare
 from benchmark.models.prepare import scenario_drive
 from benchmark.response.fem_table import fem_or_wave_table
 from benchmark.runs.fitted_session import fit_trials
-from benchmark.runs.session_run import flat_wave, session_scenario
+from benchmark.runs.session_run import session_scenario
 from benchmark.runs.trials.session_tables import base_curves
 
 TISSUE = """\
@@ -119,9 +119,3 @@ def test_a_run_takes_the_tool_that_carries_the_trials_force(pad) -> None:
     assert "the finite elements do not follow the tool as told to" in said
     drive = scenario_drive(scenario)
     assert prepare("fem", scenario).run(drive).failure is None
-
-
-def test_a_wave_with_a_flat_end_is_said_under_a_round_tool() -> None:
-    assert "flat end" in flat_wave(Tool(radius=5e-3, contact="rigid_frictionless", edge_radius=5e-3))[0]
-    assert not flat_wave(Tool(radius=5e-3, contact="rigid_frictionless", edge_radius=0.5e-3))
-    assert not flat_wave(Tool(radius=5e-3, contact="rigid_bonded"))
