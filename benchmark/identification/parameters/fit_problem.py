@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from benchmark.identification.parameters.free_parameters import COMMON, RELAXATION, SHARE, Parameter, start_vector
 from benchmark.identification.parameters.layer_model import Fading, FitTrial
 from benchmark.identification.parameters.presses.marker_rings import TRUST
-from benchmark.identification.parameters.presses.model_error import COUNT, ModelError, model_error
+from benchmark.identification.parameters.presses.model_error import COUNT, ModelError, jumps, model_error
 from benchmark.identification.parameters.presses.press_surrogate import Forward, Press
 from benchmark.response.force_curve import Array
 
@@ -61,7 +61,9 @@ class FitProblem:
     @cached_property
     def errors(self) -> tuple[ModelError, ...]:
         """How the model may be wrong in each press: what is asked for, and no less than what is known of it."""
-        return tuple(model_error(one.mesh_error, self.trust, self.discrepancy) for one in self.presses)
+        return tuple(
+            model_error(one.mesh_error, self.trust, self.discrepancy, jumps(one.setup[1])) for one in self.presses
+        )
 
     @property
     def size(self) -> int:
