@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from benchmark.identification.parameters.free_parameters import COMMON, RELAXATION, SHARE, Parameter, start_vector
 from benchmark.identification.parameters.layer_model import Fading, FitTrial
 from benchmark.identification.parameters.presses.marker_rings import TRUST
-from benchmark.identification.parameters.presses.model_error import COUNT, ModelError, jumps, model_error
+from benchmark.identification.parameters.presses.model_error import COUNT, ModelError, jumps, model_error, touches
 from benchmark.identification.parameters.presses.press_surrogate import Forward, Press
 from benchmark.response.force_curve import Array
 
@@ -19,6 +19,9 @@ WEAK = 2.0
 """Standard deviation of a free parameter's logarithm round its start (sevenfold): it stops what no data hold."""
 ERROR_LIMITS = (-0.1, 0.1)
 """Bounds of each coordinate of the model's own error."""
+AGREES, AGREES_TOUCHING = 5e-4, 1.5e-3
+"""Shares of the force to which surrogate and model are to agree: where nodes come into touch one by one, the model
+itself jumps by up to the second from one set-up to the next."""
 FARTHEST = 0.7
 """How far a coordinate may go in a round: twofold."""
 
@@ -64,6 +67,11 @@ class FitProblem:
         return tuple(
             model_error(one.mesh_error, self.trust, self.discrepancy, jumps(one.setup[1])) for one in self.presses
         )
+
+    @property
+    def agrees(self) -> float:
+        """Largest difference of surrogate and model, as a share of the force, with which a round is the last."""
+        return AGREES_TOUCHING if any(touches(one.setup[1]) for one in self.presses) else AGREES
 
     @property
     def size(self) -> int:

@@ -25,7 +25,7 @@ from benchmark.identification.parameters.identifiability import (
     discrepancy_use,
     errors_alone,
 )
-from benchmark.identification.parameters.layer_fit import AGREES, LayerFit
+from benchmark.identification.parameters.layer_fit import LayerFit
 from benchmark.identification.parameters.layer_model import MM
 from benchmark.identification.parameters.presses.marker_rings import TRUST
 from benchmark.identification.parameters.presses.model_error import ModelError
@@ -279,7 +279,7 @@ class Identified:
         return (
             f"the fit did not settle in {self.found.rounds} rounds: pressed with the values where it stopped, the "
             f"model's force still differs by {100 * self.found.disagreement:.2g} % from the one that they were fitted "
-            f"with (allowed {100 * AGREES:.2g} %). What may help: {fewer}told values nearer to the "
+            f"with (allowed {100 * self.found.problem.agrees:.2g} %). What may help: {fewer}told values nearer to the "
             "specimen's (--set), [fit.bounds], or trials that press less deep"
         )
 

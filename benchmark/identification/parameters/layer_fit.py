@@ -37,8 +37,6 @@ FIRST_FILM_NOISE = 1e-5
 """m."""
 USUAL_SCATTER = 0.015
 """Standard deviation of trials' gains to begin with, and where there are too few trials to tell it."""
-AGREES = 5e-4
-"""Largest difference of surrogate and model, as a share of the force, with which a round is the last."""
 SLOW_ROUNDS = 6
 """Rounds after which a fit goes on only while each leaves no more than `NEARING` of what the one before left."""
 MOST_ROUNDS = 20
@@ -77,7 +75,7 @@ class LayerFit:
     @property
     def settled(self) -> bool:
         """Whether model and surrogate agree where the fit ended."""
-        return self.disagreement <= AGREES
+        return self.disagreement <= self.problem.agrees
 
     @property
     def model(self) -> LayerModel:
@@ -196,7 +194,7 @@ def fit_layers(start: LayerFit, say: Say = lambda _: None, rounds: int = MOST_RO
         say(f"round {done}: model and surrogate differ by {100 * apart:.2g} % of the force")
         stopped = _at_edge(problem, model, fit.vector)
         model, nuisance = _renewed(problem, model, pressed, vector), fit.nuisance
-        if (apart <= AGREES and not stopped) or (done >= SLOW_ROUNDS and apart > NEARING * before):
+        if (apart <= problem.agrees and not stopped) or (done >= SLOW_ROUNDS and apart > NEARING * before):
             break
     model, fit, memory = _fitted(problem, model, vector, nuisance)
     return LayerFit(problem, fit, memory, done, apart)

@@ -17,7 +17,7 @@ from benchmark.errors import SolverError
 from benchmark.identification.parameters.fit_problem import ERROR_LIMITS
 from benchmark.identification.parameters.free_parameters import Parameter
 from benchmark.identification.parameters.identifiability import directions
-from benchmark.identification.parameters.layer_fit import AGREES, SEARCH, LayerFit, knowing
+from benchmark.identification.parameters.layer_fit import SEARCH, LayerFit, knowing
 from benchmark.identification.parameters.layer_model import LayerModel
 from benchmark.identification.parameters.pressed_set_ups import disagreement, joined, press_all
 from benchmark.response.force_curve import Array
@@ -106,7 +106,7 @@ def _pursued(answers: list[LayerFit], at: Array, say: Callable[[str], None]) -> 
         apart = disagreement(model.surrogates, pressed, fit.vector, len(best.problem.parameters))
         say(f"another answer, round {turn}: model and surrogate differ by {100 * apart:.2g} % of the force")
         model, at, nuisance = replace(model, surrogates=joined(model.surrogates, pressed)), fit.vector, fit.nuisance
-        if apart <= AGREES:
+        if apart <= best.problem.agrees:
             return _ended(other, model, apart)
     return _ended(other, model, apart)
 

@@ -76,11 +76,16 @@ class ModelError:
         return np.append([self.size, self.slope], self.bend * np.sqrt(_kernel()[0]))
 
 
+def touches(tool: Tool) -> bool:
+    """Whether nodes come into touch with the tool one by one."""
+    return tool.contact in TOUCHING and tool.edge_radius is not None
+
+
 def jumps(tool: Tool) -> float:
     """Standard deviation of the jumps of the force over depth under a tool, a share of it; 0 where none touches."""
-    if tool.contact not in TOUCHING or tool.edge_radius is None:
+    if not touches(tool):
         return 0.0
-    share = tool.edge_radius / tool.radius
+    share = (tool.edge_radius or tool.radius) / tool.radius
     return JUMPS_OF_SPHERE if share >= 1.0 else JUMPS_OF_EDGE * share**2
 
 
