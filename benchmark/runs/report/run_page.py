@@ -75,8 +75,9 @@ def _equivalence(record: RunRecord, errors: Mapping[str, float], points: Sequenc
     margin, wave = f"{share:g} % of the FEM's mean", record.pair.wave.name
     worst = max(errors.values(), key=abs, default=float("nan"))
     failed = [c.layer for c in record.judged if c.statistics is None or not c.statistics.equivalence.equivalent]
-    if record.judged and all(c.statistics is None for c in record.judged):
-        return Verdict("finding", f"Equivalence is not tested: {record.judged[0].note}.", points)
+    if all(c.statistics is None for c in record.judged):
+        why = record.judged[0].note if record.judged else "the layers are not compared, as the warnings say"
+        return Verdict("finding", f"Equivalence is not tested: {why}.", points)
     if failed:
         layers = [name for name in failed if name != FORCE]
         parts = ["the force"] if FORCE in failed else []

@@ -63,6 +63,15 @@ def test_single_steps_that_are_off_are_not_called_good(finished: RunRecord) -> N
     assert "in single steps the wave model is off by up to" in verdict.headline
 
 
+def test_what_is_not_compared_is_not_called_good(finished: RunRecord) -> None:
+    """Layers whose mean is zero have no comparison, and a verdict of nothing was green."""
+    verdict = run_verdict(replace(finished, comparisons=()))
+    assert verdict.status == "finding"
+    assert verdict.headline == "Equivalence is not tested: the layers are not compared, as the warnings say."
+    two = compare_layers(finished.scenario, finished.load[:2], *(np.ones((2, 3)), np.ones((2, 3))))
+    assert "fewer than three steps" in run_verdict(replace(finished, comparisons=two)).headline
+
+
 def _by_depth(record: RunRecord, factor: float) -> RunRecord:
     """The record as a press by depth whose wave has `factor` times the FEM's force at the same deflections."""
     fem, wave = record.pair.fem.result, record.pair.wave.result
