@@ -73,3 +73,29 @@ def test_free_parameters_are_those_of_all_heights_and_thicknesses_each_ones_own(
     assert [f"cylinders, {height} mm" in source for height, source in zip((8, 12, 20), thick, strict=True)] == [
         True
     ] * 3
+
+
+@pytest.fixture
+def fading(tmp_path):
+    """Three presses of a cylinder, held while three tenths of the force fade."""
+    folder, time = tmp_path / "fading", np.linspace(0.0, 12.0, 240)
+    folder.mkdir()
+    depth = 10e-3 * np.interp(time, [0.0, 0.5, 1.0, 12.0], [-0.01, 0.0, 0.08, 0.08])
+    fades = 1.0 - 0.3 * (1.0 - np.exp(-np.maximum(time - 0.75, 0.0) / 2.0))
+    lines, generator = [SESSION], np.random.default_rng(4)
+    for number in range(3):
+        force = squeezed(1.0 - np.maximum(depth, 0.0) / 10e-3) * fades + 1e-3 * generator.normal(size=time.size)
+        columns = np.column_stack([time, 1e3 * depth, force])
+        name = f"{number}.csv"
+        np.savetxt(folder / name, columns, delimiter=",", header="time_s,depth_mm,force_N", comments="")
+        lines.append(f'[[trials]]\nfile = "{name}"\ncondition = "held"')
+    (folder / "session.toml").write_text("\n".join(lines))
+    return folder
+
+
+def test_relaxation_that_is_fitted_is_not_called_beyond_the_law(fading, tmp_path) -> None:
+    plain = fitted(fading, tmp_path / "plain")
+    assert any("an elastic law cannot follow" in text for text in plain["warnings"])
+    free = fitted(fading, tmp_path / "free", free=("specimen.youngs_modulus", "specimen.relaxation"))
+    assert free["parameters"]["specimen.relaxation.g"]["value"] == pytest.approx(0.3, abs=0.03)
+    assert not any("an elastic law cannot follow" in text for text in free["warnings"])

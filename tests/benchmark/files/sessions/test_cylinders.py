@@ -5,7 +5,7 @@ import pytest
 
 from benchmark.errors import InputError
 from benchmark.files import load_session
-from benchmark.files.sessions.proposal import propose
+from benchmark.files.sessions.proposal import propose, write_proposal
 from benchmark.gate.measuring.jobs import SilentListener
 from benchmark.runs.fitted_session import fit_trials
 from tests.instruments.samples import cylinder_workbook
@@ -47,6 +47,26 @@ def test_a_proposal_names_plates(tmp_path):
     assert 'radius = "5 mm"' not in text
 
 
+def test_a_proposal_names_the_plates_of_each_condition(tmp_path):
+    """It wrote a tool of 5 mm on a bonded base, by which 30 kPa became 58."""
+    for name, diameter in (("narrow", 20), ("wide", 24)):
+        (tmp_path / name).mkdir()
+        squeezed(tmp_path / name, "a", diameter)
+        squeezed(tmp_path / name, "b", diameter)
+    before = load_session(tmp_path)
+    write_proposal(tmp_path, propose(tmp_path))
+    assert "bonded base" not in (tmp_path / "session.toml").read_text()
+    after = load_session(tmp_path)
+    assert [trial.support for trial in after.trials] == [trial.support for trial in before.trials]
+    assert [1e3 * trial.support.specimen_radius for trial in after.trials] == pytest.approx([10.0, 10.0, 12.0, 12.0])
+
+
+def test_cylinders_of_unlike_width_in_one_condition_are_told_apart_by_folders(tmp_path):
+    squeezed(tmp_path, "a", 20)
+    squeezed(tmp_path, "b", 24)
+    assert any("the files of each width into a sub-folder" in text for text in load_session(tmp_path).warnings)
+
+
 @pytest.mark.parametrize("word", ["Druckversuch", "Zugversuch"])
 def test_the_modulus_that_was_put_in_is_fitted(word, tmp_path):
     told = {"tool.contact": "rigid_frictionless", "specimen.poisson_ratio": "0.4999"}
@@ -70,6 +90,14 @@ def test_the_height_that_is_told_is_the_specimens(columns, tmp_path):
     assert session.specimen.thickness == pytest.approx(12e-3)
     assert session.trials[0].table.depth.max() == pytest.approx(2.4e-3, rel=0.01)
     assert any("12 mm (import.height)" in warning for warning in session.warnings)
+
+
+def squeezed(folder, name, diameter):
+    """A compression test of a cylinder 10 mm high."""
+    cylinder(folder, name, 10)
+    file = folder / f"{name}.csv"
+    text = file.read_text().replace("(mm),20", f"(mm),{diameter}")
+    file.write_text(text.replace("Extension (mm),Load (N)", "Compressive extension (mm),Compressive load (N)"))
 
 
 def cylinder(folder, name, height):

@@ -173,4 +173,5 @@ def test_the_gap_is_a_height_where_nobody_says_what_was_pressed(tmp_path):
         )
     made = load_session(tmp_path)
     assert heights(made) == pytest.approx([10.05, 10.05, 15.0], rel=2e-3)
-    assert heights(load_session(tmp_path, specimen="skin_forearm")) == [None] * 3
+    for stated in ("skin_forearm", "ecoflex_00_30"):  # of three layers, and of one
+        assert heights(load_session(tmp_path, specimen=stated)) == [None] * 3
