@@ -25,7 +25,7 @@ from benchmark.identification.parameters.law_shapes import law_shape
 from benchmark.identification.parameters.layer_fit import SEARCH, LayerFit, begun, fit_layers
 from benchmark.identification.parameters.other_answers import other_answers
 from benchmark.identification.parameters.posterior import posterior
-from benchmark.identification.parameters.pressed_set_ups import press_all
+from benchmark.identification.parameters.pressed_set_ups import followed
 from benchmark.identification.parameters.session_problem import (
     Assembled,
     FittedBase,
@@ -252,7 +252,7 @@ def with_setup(found: FittedSession, exact: tuple[str, ...], listener: Listener)
     listener.say(f"{session.name}: how far may the set-up as told move the stiffness?")
     try:
         made = assembled(_bases(found), FitTable(free=(COMMON,), exact=exact))
-        presses = press_all(made.problem, made.problem.start)
+        _, presses = followed(made.problem, made.problem.start)
     except (InputError, SolverError) as error:
         said = f"how far the set-up as told may move the stiffness was not worked out: {error}"
         return replace(found, warnings=(*found.warnings, said))
