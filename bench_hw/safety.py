@@ -20,7 +20,7 @@ CAMERA_SILENT = 1.0
 MISSED = 3
 FROZEN = 0.25
 """How long all six components may stay the same to the last digit, s: a live sensor's noise moves them."""
-FEWEST_FROZEN = 20
+FEWEST_FROZEN = 5
 """Samples that must be the same before a sensor counts as frozen, however slowly they come."""
 _NAMES = ("Fx", "Fy", "Fz", "Tx", "Ty", "Tz")
 

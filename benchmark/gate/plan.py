@@ -168,8 +168,8 @@ def _own(name: str, gate: Path) -> str:
     return str(path)
 
 
-OWN_ALONE = "its functions alone"
-"""How a user's own model is timed; baselines that timed the reading of its results as well are others."""
+OWN_ALONE = "its functions alone, each time under another load"
+"""How a user's own model is timed; baselines that timed the reading of its results, or its memory, are others."""
 
 
 def _fingerprint(jobs: tuple[Mapping[str, Any], ...], references: tuple[str, ...]) -> str:

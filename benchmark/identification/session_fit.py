@@ -203,7 +203,7 @@ SCATTER = 0.25
 def fit_warnings(trials: Sequence[TrialFit], pooled: PooledStiffness) -> list[str]:
     """Sentences on what limits the fit, each once for all trials."""
     scatter = _conditions(trials) or _scatter(trials, pooled)
-    found = (_far(pooled), _time(trials), _misfit(trials), scatter, _few(pooled))
+    found = (_far(pooled), _time(trials), _misfit(trials), _at_end(trials), scatter, _few(pooled))
     return [text for text in found if text]
 
 
@@ -280,6 +280,16 @@ def _misfit(trials: Sequence[TrialFit]) -> str:
     return (
         f"the elastic law leaves more than {MISFIT:g} % of the peak (root mean square) in {len(above)} of "
         f"{len(trials)} trials, up to {max(above):.3g} %; they are kept, but their stiffness is that of another law"
+    )
+
+
+def _at_end(trials: Sequence[TrialFit]) -> str:
+    at_end = sum(trial.onset_at_bound for trial in trials)
+    if 2 * at_end <= len(trials):
+        return ""
+    return (
+        f"the contact of {at_end} of {len(trials)} trials lies at an end of the range of depths that their forces "
+        "allow: the force rises otherwise than the law, as by a drift in the air, and the stiffness may be far off"
     )
 
 

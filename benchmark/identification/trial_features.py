@@ -13,9 +13,14 @@ from benchmark.response.force_curve import Array
 from benchmark.response.noise import lag_one, whitened
 
 RISEN = 0.01
-"""Force above its level at the least depth, as a fraction of its rise, at which contact has begun."""
+"""Force above its level at the least depth, as a fraction of its rise, that noise or a little contact may be."""
 NOISES = 6.0
 """The same in standard deviations of the force's sample-to-sample noise."""
+LATEST = 0.15
+"""The same as a fraction of its rise where the force rises steadily before, as by a drift in the air."""
+STEADY, STRAIGHT = 0.2, 1.3
+"""What a steady force rises at least from the first third of the way there to the middle one, as a fraction of what it
+rises on all of it; and from the middle third to the last one at most, over the former: a drift, not a soft contact."""
 LEAST_EVIDENCE = 5.0
 """Least t of the stiffness, with autocorrelated noise, that counts as contact."""
 LEAST_TRAVEL = 1e-6
@@ -84,9 +89,10 @@ def contact_range(depth: Array, force: Array) -> ContactRange:
     """Range in which the data allow the contact onset, and the force where the trial is least deep.
 
     Contact has begun at the latest where the force has left its level at the least depth by 1 % of its rise
-    and six standard deviations of its noise, for the last time before the largest force. It began at the
-    earliest as far above that as the deepest row lies below it, and no more than a tenth of the travel above
-    the least depth. The force at the least depth is its median there, within twice those margins.
+    and six standard deviations of its noise, for the last time before the largest force; by 15 % where it
+    rises steadily up to there, for it may have drifted in the air. It began at the earliest as far above the
+    first of these as the deepest row lies below it, and no more than a tenth of the travel above the least
+    depth. The force at the least depth is its median there, within twice the first margin.
 
     Parameters
     ----------
@@ -96,13 +102,30 @@ def contact_range(depth: Array, force: Array) -> ContactRange:
     shallow = depth <= np.quantile(depth, 0.05)
     calm = without_spikes(force)
     level, peak = float(np.median(force[shallow])), int(np.argmax(calm))
-    margin = max(NOISES * sample_noise(force), RISEN * float(calm[peak] - level))
-    below = np.flatnonzero(calm[:peak] <= level + margin)
-    risen = float(depth[below[-1] + 1]) if below.size else float(depth.min())
+    rise = float(calm[peak] - level)
+    margin = max(NOISES * sample_noise(force), RISEN * rise)
+    left = _left(calm[:peak], level + margin)
+    late = _left(calm[:peak], level + max(margin, LATEST * rise)) if _steady(calm[:left], margin) else left
+    risen = float(depth[left]) if left else float(depth.min())
     low = max(float(depth.min()) - 0.1 * travel(depth), 2.0 * risen - float(depth.max()))
-    high = max(risen, low + 1e-3 * travel(depth))
+    high = max(risen, float(depth[late]) if late else risen, low + 1e-3 * travel(depth))
     margin = max(margin, np.finfo(float).tiny)
     return ContactRange(low, high, float(np.median(depth[shallow])), level - 2.0 * margin, level + 2.0 * margin)
+
+
+def _left(loading: Array, force: float) -> int:
+    """Row at which a force (k,) on the way to its largest leaves another, N, for the last time, or 0."""
+    below = np.flatnonzero(loading <= force)
+    return int(below[-1]) + 1 if below.size else 0
+
+
+def _steady(air: Array, margin: float) -> bool:
+    """Whether a force (k,) that rises by a margin, N, does so all along, and not at its end alone."""
+    third = len(air) // 3
+    if not third:
+        return False
+    first, middle, last = np.median(air[: 3 * third].reshape(3, third), axis=1)
+    return bool(middle - first > STEADY * margin and last - middle < STRAIGHT * (middle - first))
 
 
 def required_depth(depth: Array, force: Array) -> float:

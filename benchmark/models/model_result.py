@@ -274,6 +274,10 @@ class Drive:
     time: Array
     value: Array
 
+    def times(self, share: float) -> Drive:
+        """The history with its load times a share."""
+        return Drive(self.control, self.time, share * self.value)
+
 
 class PreparedModel(Protocol):
     """A model after its one-time set-up."""

@@ -96,12 +96,15 @@ class NewtonResult:
         Why it failed, or "".
     round_off
         Of the factors that the solver holds after a success, see :meth:`Equilibrium.factorise`.
+    unstable
+        Whether it was seen that the body would leave the equilibrium by itself.
     """
 
     state: State
     iterations: int
     reason: str = ""
     round_off: Callable[[FloatArray], float] | None = None
+    unstable: bool = False
 
     @property
     def success(self) -> bool:

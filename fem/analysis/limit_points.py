@@ -1,7 +1,9 @@
-"""Over limit points: to the next equilibrium where none is near, and what the way there loses.
+"""Limit points: whether an equilibrium is stable and near the one before, and over them to the next one.
 
 Under a tool without friction soft tissue slides out over the edge, and where it slips round, equilibrium ends in force
-and mostly in depth. What the slip sets free is lost, as it would be to viscosity or in waves.
+and mostly in depth. What the slip sets free is lost, as it would be to viscosity or in waves. Under a pressure the
+surface folds at its edge: beyond its largest force Newton's method finds one of many unstable states, which mesh and
+steps choose.
 """
 
 from __future__ import annotations
@@ -22,11 +24,18 @@ MOST_LOST = 0.02
 LEAST_GAIN = 1e-5
 """Of the tool's work, above which energy is taken for gained and not for unbalanced by a tolerance."""
 GIVES_WAY = "the tissue gives way"
+NONE_NEAR = "no stable equilibrium is near: the tissue folds or gives way"
+BENT, LEAST_BENT = 0.3, 1e-3
+"""Energy unbalanced on the straight way between two states, over the work, above which one does not follow the other:
+times the square of the step over the load, at least the second. Steps of a half to three quarters of the load, to 0.3
+of a skin, have 0.2 times that square and less; jumps, whose step may be as short as one likes, 0.008 and more."""
 FIRST_DURATION = 1e-4
 """Of a creeping body's first step, in its own time (:func:`slowed`)."""
 MOST_CREEP = 100  # steps
 MOST_IN_CREEP, FEW = 15, 8  # corrections in a step, and up to which the next one is twice as long
 AT_REST = 1e-2  # drag over the force, below which equilibrium without it is near
+LEAST_WORK = 1e-6
+"""Of the force times the whole displacement, up to which energy is unbalanced by rounding, as in a hold."""
 
 
 @dataclass(frozen=True)
@@ -43,29 +52,33 @@ class Account:
         What of it the body did not take, from the first limit point on.
     crept
         How often the body crept over one.
+    unstable
+        How many of the equilibria on the way are known not to be stable.
     """
 
     work: float = 0.0
     most: float = 0.0
     lost: float = 0.0
     crept: int = 0
+    unstable: int = 0
 
     def after(self, problem: Equilibrium, start: State, end: State, *, beyond: bool) -> Account:
         """The account after the way from one state to another; what is lost counts where that is beyond limits."""
         done = 0.5 * (start.force + end.force) * (problem.depth(end.y) - problem.depth(start.y))
         lost = done - problem.system.taken(start.y, end.y) if beyond else 0.0
-        return Account(self.work + done, max(self.most, self.work + done), self.lost + lost, self.crept)
+        work = self.work + done
+        return replace(self, work=work, most=max(self.most, work), lost=self.lost + lost)
 
     @property
     def row(self) -> FloatArray:
-        """The four as numbers (4,); `Account.of_row` makes them an account again."""
-        return np.array([self.work, self.most, self.lost, self.crept])
+        """The five as numbers (5,); `Account.of_row` makes them an account again."""
+        return np.array([self.work, self.most, self.lost, self.crept, self.unstable])
 
     @classmethod
     def of_row(cls, row: FloatArray) -> Account:
-        """The account of numbers (4,)."""
-        work, most, lost, crept = row.tolist()
-        return cls(work, most, lost, int(crept))
+        """The account of numbers (5,)."""
+        work, most, lost, crept, unstable = row.tolist()
+        return cls(work, most, lost, int(crept), int(unstable))
 
     @property
     def share(self) -> float:
@@ -76,6 +89,60 @@ class Account:
     def overdrawn(self) -> bool:
         """Whether more is lost than may be, or nobody knows."""
         return not self.lost <= MOST_LOST * self.most
+
+
+def is_unstable(problem: Equilibrium, state: State, control: Literal["force", "depth"]) -> bool:
+    """Whether a body without a memory, held by nothing but its supports, would leave an equilibrium by itself.
+
+    Its tangent then has negative eigenvalues (Z. P. Bazant and L. Cedolin, Stability of Structures, 1991, section 4.4);
+    one of them the tool takes away that goes to a given depth, where the force falls with it. False where the linear
+    solver does not count them.
+
+    Parameters
+    ----------
+    problem
+        The equations; the solver's factors are those of the last correction.
+    state
+        In equilibrium.
+    control
+        What is prescribed.
+    """
+    if problem.system.items or problem.system.remembers or not problem.solver.negative:
+        return False
+    evaluation = problem.system.evaluate(state.y, state.pressure)
+    if evaluation is None:
+        return True
+    problem.factorise(evaluation)
+    negative = problem.solver.negative or 0
+    if negative and control == "depth":
+        sinking = problem.depth(problem.solve(problem.unit_load[:, None], 0.0)[:, 0])
+        negative -= sinking < 0.0
+    return negative > 0
+
+
+def follows(problem: Equilibrium, start: State, end: State, share: float) -> bool:
+    """Whether the second of two equilibria lies on the way on from the first, and not on another branch.
+
+    On the straight way between them the internal forces do the work of the tool, but for terms of the third order.
+
+    Parameters
+    ----------
+    problem
+        The equations, of a body without a memory.
+    start, end
+        The equilibria.
+    share
+        Of the load, how far they are apart.
+    """
+    system, way = problem.system, end.y - start.y
+    work = 0.5 * (start.force + end.force) * float(problem.unit_load @ way)
+    middle = system.element_displacement(start.y + 0.5 * way)
+    halfway = system.elements.evaluate(middle, system.elements.rest_pressure)
+    if halfway is None:
+        return False
+    taken = float(np.sum(halfway.force * system.scatter.gather(way)))
+    rounding = LEAST_WORK * abs(end.force * float(problem.unit_load @ end.y))
+    return abs(taken - work) <= max(LEAST_BENT, BENT * share**2) * abs(work) + rounding
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -99,22 +99,36 @@ class _Run:
         return self.record.solution(None, self._warned())
 
     def _warned(self) -> tuple[str, ...]:
-        """The warnings, and what was lost over limit points."""
+        """The warnings, what was lost over limit points, and from where on the press is not stable."""
         accounts = [Account.of_row(row) for row in self.stepper.accounts]
+        return (*self.warnings, *self._snapped(accounts), *self._unstable(accounts))
+
+    def _unstable(self, accounts: Sequence[Account]) -> Iterator[str]:
+        if accounts[-1].unstable:
+            yield (
+                f"the press is not stable from {self._first(accounts, 'unstable')} on: the tissue would fold or "
+                "wrinkle there, and what is computed beyond is one of several equilibria, which another mesh or other "
+                "steps may not share"
+            )
+
+    def _first(self, accounts: Sequence[Account], what: str) -> str:
+        """Where a number of the accounts first rises."""
+        state = self.stepper.known.states[next(n for n, one in enumerate(accounts) if getattr(one, what))]
+        return f"{state.force:.4g} N and {1e3 * self.record.equilibrium.depth(state.y):.4g} mm"
+
+    def _snapped(self, accounts: Sequence[Account]) -> Iterator[str]:
         crept, share = accounts[-1].crept, accounts[-1].share
         if not crept and share < NOTICED:
-            return self.warnings
+            return
         where = ""
         if crept:
-            first = next(n for n, account in enumerate(accounts) if account.crept)
-            state, times = self.stepper.known.states[first], "once" if crept == 1 else f"{crept} times, first"
-            where = f" ({times} at {state.force:.4g} N and {1e3 * self.record.equilibrium.depth(state.y):.4g} mm)"
+            times = "once" if crept == 1 else f"{crept} times, first"
+            where = f" ({times} at {self._first(accounts, 'crept')})"
         lost = f"{100.0 * share:.2g} %" if share >= NOTICED else f"less than {100.0 * NOTICED:g} %"
-        said = (
+        yield (
             f"the surface snapped past the tool's edge{where}: {lost} of the tool's work was lost, "
             "and beyond that another mesh may differ by several per cent"
         )
-        return (*self.warnings, said)
 
     def _accept(self, step: int, time: float, advance: Advance) -> None:
         system, state = self.stepper.problem.system, advance.state

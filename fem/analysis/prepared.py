@@ -10,6 +10,7 @@ import numpy as np
 
 from fem.analysis.checkpoint import Checkpoint, Keeper, run_fingerprint
 from fem.analysis.equilibrium import Equilibrium
+from fem.analysis.limit_points import NONE_NEAR
 from fem.analysis.linear import run_linear
 from fem.analysis.newton import NewtonSettings
 from fem.analysis.nonlinear import run_nonlinear
@@ -27,6 +28,7 @@ PULLING = "the load history pulls (negative values): the contact is tied to the 
 BULGE = 0.01
 """Of a cylinder's height, by which its side may go past a plate before it is said."""
 GLUED = "the load history pulls (negative values): the specimen is glued to its plates and cannot come off"
+BY_DEPTH = "a press by depth may go on from there"
 COARSER = "a coarser mesh, whose elements at the tool's edge fold later, may follow a deeper press"
 ROUNDER = "a larger edge_radius of the tool may follow a deeper press"
 
@@ -138,6 +140,8 @@ class Model:
         if failure is None or coarse or failure.target <= failure.reached:
             return solution
         advice = ROUNDER if touches else COARSER
+        if failure.reason == NONE_NEAR and failure.control == "force":
+            advice = f"{BY_DEPTH}, and {advice}"
         return replace(solution, failure=replace(failure, reason=f"{failure.reason}; {advice}"))
 
     def _bulged(self, solution: Solution) -> Solution:

@@ -10,7 +10,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from fem.analysis.equilibrium import Equilibrium, NewtonResult, State
-from fem.analysis.limit_points import GIVES_WAY, Account, creep
+from fem.analysis.limit_points import GIVES_WAY, NONE_NEAR, Account, creep, follows, is_unstable
 from fem.analysis.newton import NewtonSettings, solve_newton
 from fem.analysis.prediction import LOWEST_ORDER, GuidedStates, KnownStates, RecentStates
 from fem.arrays import FloatArray
@@ -27,6 +27,10 @@ FIRST_TOLERANCE = 1e-2
 HELD_BELOW = 2e-3
 """Tolerance below which such a round, from the second on, begins with the factors of the one before."""
 MOST_OVER = 30  # limit points in a press; five were the most that was seen
+MISSED = 0.2
+"""Of the way from the last state, by which a prediction misses one that may lie on another branch."""
+CROSSED = 0.005
+"""Of the load, the longest step from a stable state to an unstable one."""
 AHEAD = (1.0 / 64.0, 1.0 / 8.0)
 """How far beyond the last equilibrium, of the way to a step, the next one is looked for behind a limit point."""
 
@@ -156,7 +160,7 @@ class Stepper:
         self._known = KnownStates(self._value, self._state)
         recent = RecentStates(self._value, self._time, self._state) if problem.system.remembers else None
         self._recent = guided or recent
-        self._accounts = [Account()]
+        self._accounts, self._unstable, self._finest = [Account()], False, 0.0
 
     @property
     def accounts(self) -> FloatArray:
@@ -200,8 +204,9 @@ class Stepper:
         """Go to the load value `target` at a time in s (None: at once), halving the way as often as needed."""
         start, iterations, cuts = self._value, 0, 0
         began, way = self._time, target - start
+        self._finest = 2.0 * SMALLEST_PART * abs(way)
         duration = 0.0 if time is None else time - began
-        share, part = 0.0, 1.0
+        share, part, folds = 0.0, 1.0, False
         for _ in range(MOST_PARTS):
             last = part >= 1.0 - share
             value = target if last else start + (share + part) * way
@@ -209,7 +214,7 @@ class Stepper:
             result, system = self._solve(value, end)
             iterations += result.iterations
             if result.success:
-                self._accept(result.state, value, end, system)
+                self._accept(result.state, value, end, system, unstable=result.unstable)
                 if last:
                     return Advance(self._state, value, iterations, cuts, time=self._time)
                 share += part
@@ -217,11 +222,13 @@ class Stepper:
             else:
                 part *= 0.5
                 cuts += 1
+                folds |= result.reason == NONE_NEAR
                 if part <= SMALLEST_PART:
                     if self._touched_by_depth(target, duration) or self._goes_beyond(target, duration):
                         further = self.advance(target, time)
                         return replace(further, iterations=further.iterations + iterations, cuts=further.cuts + cuts)
-                    return Advance(self._state, self._value, iterations, cuts, result.reason, self._time)
+                    reason = NONE_NEAR if folds else result.reason
+                    return Advance(self._state, self._value, iterations, cuts, reason, self._time)
         reason = f"more than {MOST_PARTS} parts of one step"
         return Advance(self._state, self._value, iterations, cuts, reason, self._time)
 
@@ -298,8 +305,29 @@ class Stepper:
             result, system = self._settle(guess, value, begun, self._control)
             iterations += result.iterations
             if result.success:
+                result = self._followed(result, guess, value, system)
+            if result.success:
                 break
         return replace(result, iterations=iterations), system
+
+    def _followed(self, result: NewtonResult, guess: State, value: float, system: System) -> NewtonResult:
+        """A success with whether it is unstable; it fails where that, or one far from the guess, lies elsewhere.
+
+        The first unstable state comes in a short step: there is none where the force has passed its largest.
+        """
+        if system.items or system.remembers:
+            return result
+        if value == self._value:
+            return replace(result, unstable=self._unstable)
+        problem, state = replace(self._problem, system=system), result.state
+        unstable = is_unstable(problem, state, self._control)
+        step, most = abs(value - self._value), max(abs(value), abs(self._value))
+        if unstable and not self._unstable and step > max(CROSSED * most, self._finest):
+            return replace(result, reason=NONE_NEAR)
+        missed, way = np.linalg.norm(state.y - guess.y), np.linalg.norm(state.y - self._state.y)
+        if (unstable or missed > MISSED * way) and not follows(problem, self._state, state, step / most):
+            return replace(result, reason=NONE_NEAR)
+        return replace(result, unstable=unstable)
 
     def _beginnings(self, value: float, time: float) -> Iterator[tuple[State, System]]:
         """Predictions with the equations to begin with: under more force those of as much more press.
@@ -361,9 +389,20 @@ class Stepper:
         change = float(np.abs(other.settled - system.settled).sum())
         return None if change <= self._settings.misfit * abs(state.force) else other
 
-    def _accept(self, state: State, value: float, time: float, system: System, account: Account | None = None) -> None:
+    def _accept(
+        self,
+        state: State,
+        value: float,
+        time: float,
+        system: System,
+        account: Account | None = None,
+        *,
+        unstable: bool = False,
+    ) -> None:
         """Take a state of equilibrium as the last one, with its account where a straight way there tells another."""
         account = account or self._account_at(state, system)
+        account = replace(account, unstable=account.unstable + unstable)
+        self._unstable = account.unstable > self._accounts[-1].unstable
         crept = account.crept > self._accounts[-1].crept
         self._accounts.append(account)
         if self._watch is not None:

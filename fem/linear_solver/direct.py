@@ -103,6 +103,14 @@ class SuperLUSolver:
         except RuntimeError as error:
             raise SingularMatrixError(str(error)) from error
 
+    @property
+    def negative(self) -> int | None:
+        """Negative eigenvalues, by the pivots (Sylvester's law of inertia); None where rows were exchanged."""
+        factors = self._factors
+        if factors is None or not np.array_equal(factors.perm_r, factors.perm_c):
+            return None
+        return int(np.count_nonzero(factors.U.diagonal() < 0.0))
+
     def solve(self, right: FloatArray, tolerance: float = 0.0) -> FloatArray:  # noqa: ARG002 (it comes to round-off)
         """Solution (n, k) of right-hand sides (n, k), whatever the tolerance.
 

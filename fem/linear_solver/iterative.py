@@ -143,6 +143,8 @@ class IterativeSolver:
     """
 
     tolerance = TOLERANCE
+    negative = None
+    """It has no factors that would tell of negative eigenvalues."""
 
     def __init__(self, space: CoarseSpace, coarse: SymmetricSolver, direct: Callable[[], SymmetricSolver]) -> None:
         self._space, self._coarse, self._make_direct = space, coarse, direct

@@ -51,6 +51,7 @@ CONTROLS = MappingProxyType({0: 1, 1: 2, 7: 0, 9: 8, 20: 1})
 # Two-level factorisation of variable blocks: unknowns that are alike to 80 %, those of a node, are analysed as one.
 BLOCKS = MappingProxyType({23: 1, 36: -80})
 SINGLE_PRECISION = 27  # of iparm, 1 for single
+NEGATIVE = 22  # of iparm, where Pardiso counts negative eigenvalues
 SMALL = 10_000  # unknowns below which threads wait for each other longer than they work
 SINGLE_FROM = 30_000  # unknowns; below, the iterations take what the factorisation saves
 # Residual over right-hand side, scaled to a unit diagonal; one pass of refinement takes it to round-off.
@@ -125,6 +126,11 @@ class PardisoSolver:
     def is_single(self) -> bool:
         """Whether the factors are in single precision."""
         return self.way.is_single
+
+    @property
+    def negative(self) -> int:
+        """Negative eigenvalues of what was factorised last (Sylvester's law of inertia)."""
+        return self._factors.negative
 
     def factorise(self, data: FloatArray) -> None:
         """Factorise the entries (nnz,).
@@ -232,6 +238,11 @@ class Factors:
         """Factorise the entries (nnz,); SingularMatrixError if Pardiso finds no factors."""
         np.copyto(self._values, data, casting="same_kind")
         self._call(FACTORISE, self._nothing)
+
+    @property
+    def negative(self) -> int:
+        """Negative eigenvalues of what was factorised last."""
+        return 0 if self._way.kind == POSITIVE_DEFINITE else int(self._solver.iparm[NEGATIVE])
 
     def solve(self, right: FloatArray) -> FloatArray:
         """Solution (n, k) of right-hand sides (n, k)."""

@@ -31,6 +31,11 @@ class SymmetricSolver(Protocol):
         """Unbalanced over given forces that a solution may leave; 0 where refinement takes it to round-off."""
         ...
 
+    @property
+    def negative(self) -> int | None:
+        """Negative eigenvalues of what was factorised last; None where the factors do not tell."""
+        ...
+
     def factorise(self, data: FloatArray) -> None:
         """Factorise the upper triangle with entries (nnz,)."""
         ...

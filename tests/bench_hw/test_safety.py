@@ -128,7 +128,7 @@ def test_one_component_that_moves_is_enough(monitor):
 
 
 def test_few_equal_samples_of_a_slow_sensor_are_no_fault(monitor):
-    for k in range(19):
+    for k in range(4):
         monitor.check_force(block([[0, 0, -1.1]], time=float(k), sample=7 * k))
     with pytest.raises(SafetyError, match="repeats one value"):
-        monitor.check_force(block([[0, 0, -1.1]], time=19.0, sample=7 * 19))
+        monitor.check_force(block([[0, 0, -1.1]], time=4.0, sample=7 * 4))

@@ -37,6 +37,11 @@ _RATES = (0.01, 100_000.0)
 _SAME_RATE = 1e-3
 """Relative difference of two rates that are one, as 29.97 and 30000/1001."""
 _GREY = cv2.VideoWriter.fourcc(*"Y800")
+_BY_MOTION = (
+    *("FMP4", "MP4V", "XVID", "DIVX", "DX50", "H263", "H264", "X264", "AVC1", "HEVC", "H265", "HVC1", "HEV1"),
+    *("VP80", "VP90", "AV01", "MPG1", "MPG2", "MPEG", "WMV1", "WMV2", "WMV3", "WVC1", "FLV1", "THEO"),
+)
+"""FFmpeg's four letters of codecs that keep of a picture how it differs from the one before."""
 """FFmpeg's pixels of one byte of grey: they need no way through colour and back."""
 _TRIALS = (".mcap", ".mcap.part")
 
@@ -162,6 +167,7 @@ class VideoFrames:
             raise InputError(f"{path}: no such file; allowed: a trial, a video, or a folder of pictures")
         video = self._opened()
         self._own = float(video.get(cv2.CAP_PROP_FPS))
+        self._codec = _four_letters(int(video.get(cv2.CAP_PROP_FOURCC)))
         self.rate = rate or self._own
         count = video.get(cv2.CAP_PROP_FRAME_COUNT)
         video.release()
@@ -193,8 +199,14 @@ class VideoFrames:
             raise InputError(f"{self._path}: the video has no picture that can be read")
 
     def notes(self) -> tuple[str, ...]:
-        """Say if the video ended early, or tells of another rate than is used."""
+        """Say if the video ended early, tells of another rate than is used, or keeps differences between pictures."""
         said = []
+        if self._codec.upper() in _BY_MOTION:
+            said.append(
+                f"the video is compressed from picture to picture ({self._codec}): small motion comes late in it, "
+                "places are up to fifteen times less sure than stated, and a clock set by them may be 10 to 25 ms off; "
+                "record without loss (FFV1) or each picture by itself (MJPG)"
+            )
         if self._given is not None and self.expected is not None and self._given < self.expected:
             said.append(f"the video ends after {self._given} of the {self.expected} pictures it should have")
         if _RATES[0] <= self._own <= _RATES[1] and abs(self._own - self.rate) > _SAME_RATE * self.rate:
@@ -218,6 +230,11 @@ class VideoFrames:
         if int(video.get(cv2.CAP_PROP_CODEC_PIXEL_FORMAT)) == _GREY:
             video.set(cv2.CAP_PROP_CONVERT_RGB, 0)
         return video
+
+
+def _four_letters(code: int) -> str:
+    """The codec that OpenCV tells of by a number; empty where it is raw or not known."""
+    return code.to_bytes(4, "little").decode("latin-1").strip("\0 ") if code > 0 else ""
 
 
 class TrialFrames:
@@ -249,6 +266,7 @@ class TrialFrames:
             self._problems.append("no copy of the trial's metadata is whole: times are the raw clock's")
         self._epoch = 0 if header is None else nanoseconds(header.clock_epoch)
         self.synthetic = header is not None and header.synthetic
+        self.camera_file = "" if header is None else header.calibrations.get("camera", "")
 
     def frames(self) -> Iterator[Frame]:
         """Give the pictures; one whose time does not increase is left out and noted."""

@@ -5,6 +5,7 @@ The first picture that shows the whole grid gives every marker its number for go
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -16,8 +17,8 @@ from bench_hw.storage.atomic import check_replaceable
 from bench_hw.vision import Progress
 from bench_hw.vision.camera.camera_file import read_camera
 from bench_hw.vision.camera.pinhole import Camera, survey_domain
-from bench_hw.vision.frames.opening import open_frames
-from bench_hw.vision.frames.source import Frame
+from bench_hw.vision.frames.opening import TrialFrames, open_frames
+from bench_hw.vision.frames.source import Frame, FrameSource
 from bench_hw.vision.markers.detection import GridError, detect_grid
 from bench_hw.vision.markers.grid import DetectedGrid, Layout, Picture
 from bench_hw.vision.tracking.methods import METHODS
@@ -113,8 +114,9 @@ def track(order: TrackOrder, progress: Progress | None = None) -> TrackOutcome:
                 progress(pipeline.tally.frames, source.expected)
         if still is not None and order.still is not None:
             still.write(order.still)
-    warnings = [*_about_camera(camera), *source.notes(), *pipeline.tally.warnings(), *pipeline.knocks.warnings()]
-    return TrackOutcome(order.out, order.method, beginning.grid, pipeline.tally, source.synthetic, tuple(warnings))
+    about_camera = (*_about_camera(camera), *_another_camera(source, order.camera))
+    warnings = (*about_camera, *source.notes(), *pipeline.tally.warnings(), *pipeline.knocks.warnings())
+    return TrackOutcome(order.out, order.method, beginning.grid, pipeline.tally, source.synthetic, warnings)
 
 
 def _check(order: TrackOrder) -> None:
@@ -143,6 +145,17 @@ def _pictures(source: str) -> Path | None:
 def _about_camera(camera: Camera) -> list[str]:
     domain = survey_domain(camera)
     return [] if domain.whole else [f"the camera file: {domain}"]
+
+
+def _another_camera(source: FrameSource, path: Path) -> list[str]:
+    """Whether a trial tells of another camera file than the one that is used."""
+    told = source.camera_file if isinstance(source, TrialFrames) else ""
+    if not told or told == hashlib.sha256(path.read_bytes()).hexdigest():
+        return []
+    return [
+        f"the trial was captured with another camera file than {path}: all places go by the file that is given, and "
+        "are off by what the cameras differ in; its own is camera.toml in the folder it was captured into"
+    ]
 
 
 @dataclass(frozen=True, eq=False, slots=True)

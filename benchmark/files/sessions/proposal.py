@@ -23,7 +23,13 @@ from benchmark.files.schema import validated
 from benchmark.files.sessions.description import SessionFile
 from benchmark.files.sessions.doubts import doubtful_forces, doubtful_times
 from benchmark.files.sessions.recordings import Recording, read_recordings, with_headers
-from benchmark.files.sessions.session_folder import SESSION_FILE, inside, session_table, unclosed_recordings
+from benchmark.files.sessions.session_folder import (
+    SESSION_FILE,
+    inside,
+    session_table,
+    unclosed_recordings,
+    unused_films,
+)
 from benchmark.files.sessions.specimens import assumed_specimen, heights_under, told_heights
 from benchmark.files.sessions.trials import read_markers
 from benchmark.files.sources import KeyPath, Source, is_file
@@ -138,7 +144,7 @@ def propose(folder: Path, told: Overrides = NOTHING) -> Proposal:
         _refuse_existing(folder / SPECIMEN_FILE)
     texts = {SPECIMEN_FILE: body, SESSION_FILE: "\n".join([*head, *trials]) + "\n"}
     doubts = (*_doubts(read.trials), *said)
-    return Proposal(texts, to_say, (*doubts, *read.aside, *unclosed_recordings(source)))
+    return Proposal(texts, to_say, (*doubts, *read.aside, *unclosed_recordings(source), *unused_films(source, paths)))
 
 
 def _doubts(trials: Sequence[Recording]) -> list[str]:

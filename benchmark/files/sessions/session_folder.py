@@ -158,6 +158,30 @@ def unclosed_recordings(source: Source) -> list[str]:
     return _said_of_unclosed(source.folder, " and is left aside")
 
 
+FILMS = (".avi", ".mkv", ".mp4", ".mov", ".webm", ".m4v", ".mpg", ".wmv")
+
+
+def unused_films(source: Source, used: Sequence[Path]) -> list[str]:
+    """What is said of films beside a session's trials, where none of them has a film, pictures or markers."""
+    given, endings = Path(source.name), {path.suffix.lower() for path in used}
+    if given.name != SESSION_FILE and is_file(given):
+        return []
+    if any(_of_trial(path) for path in used) or not endings.isdisjoint((*FILMS, ".mcap")):
+        return []
+    places = dict.fromkeys([source.folder, *(path.parent for path in used)])
+    beside = [file for place in places for file in sorted(place.iterdir(), key=_natural)]
+    found = [
+        file.relative_to(source.folder).as_posix() for file in beside if file.suffix.lower() in FILMS and is_file(file)
+    ]
+    if not found:
+        return []
+    more = f" and {len(found) - 5} more" if len(found) > 5 else ""
+    return [
+        f"films that no trial names are left aside: {', '.join(found[:5])}{more}; markers in a film need "
+        f'film = "{found[0]}" in the [[trials]] it belongs to, and a [camera] with the grid and the camera\'s file'
+    ]
+
+
 RESULTS: Final = {
     "fit.json": "fit",
     "discovery.json": "discover",
@@ -192,7 +216,8 @@ def said_of_folder(source: Source, listed: Sequence[Path], specimen: Path | None
     told : container of str
         Keys that `--set` tells.
     """
-    return [*_unsaid(source, specimen, told), *unclosed_recordings(source), *_unlisted(source, listed)]
+    beside = (*unclosed_recordings(source), *_unlisted(source, listed), *unused_films(source, listed))
+    return [*_unsaid(source, specimen, told), *beside]
 
 
 def _unlisted(source: Source, listed: Sequence[Path]) -> list[str]:

@@ -1,9 +1,11 @@
 """`track`: the table, the JSON, the refusals."""
 
+import hashlib
 import importlib.util
 import json
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -44,9 +46,10 @@ def camera(press, tmp_path) -> Path:
 
 
 @pytest.fixture
-def trial(press, tmp_path) -> Path:
+def trial(press, camera, tmp_path) -> Path:
     """A synthetic trial of eight JPEG pictures at uneven instants; the fourth was lost by the camera."""
-    header = TrialHeader("trial_001", "2024-05-06T07:08:09+00:00", 5.0, synthetic=True)
+    own = {"camera": hashlib.sha256(camera.read_bytes()).hexdigest()}
+    header = TrialHeader("trial_001", "2024-05-06T07:08:09+00:00", 5.0, calibrations=own, synthetic=True)
     with open_trial(tmp_path / "trial_001.mcap", header, background=False) as writer:
         for number in (0, 1, 2, 4, 5, 6, 7, 8):
             data = cv2.imencode(".jpg", press[1][number % 3], [cv2.IMWRITE_JPEG_QUALITY, 95])[1].tobytes()
@@ -70,6 +73,14 @@ def test_a_trial_becomes_a_table_at_the_cameras_own_instants(run, press, camera,
     places = np.stack([table.x, table.y], axis=1).reshape(8, 18, 2) * 1e3
     truth = press[2][[0, 1, 2, 1, 2, 0, 1, 2]]
     assert np.sqrt(((places - truth) ** 2).sum(axis=2).mean()) < 0.03 * press[0].mm_per_px
+
+
+def test_another_camera_file_than_the_trial_s_own_is_told(run, press, camera, trial, tmp_path):
+    other = tmp_path / "other.toml"
+    other.write_text(replace(press[0], focal=672.0).camera_toml())
+    ran = run("track", trial, "--camera", other, "--out", tmp_path / "markers.csv", "--json")
+    assert ran.exit_code == 0
+    assert "captured with another camera file than" in " ".join(json.loads(ran.stdout)["warnings"])
 
 
 def test_the_text_names_what_was_written_and_says_synthetic(run, camera, trial, tmp_path):

@@ -1,11 +1,17 @@
 """What a rig file may say."""
 
+import re
+import typing
+from pathlib import Path
+
 import pytest
 
+from bench_hw.configuration import StrictModel
 from bench_hw.errors import InputError
 from bench_hw.rig.opening import sheet_of, specimen_of
-from bench_hw.rig.rig_file import load_rig, shipped_rigs, simulated_rig
+from bench_hw.rig.rig_file import Rig, ScheduledFault, load_rig, shipped_rigs, simulated_rig
 from bench_hw.simulated.tabulated import read_sheet
+from bench_hw.simulated.virtual_specimen import SpecimenFile
 
 FORCE = '[force]\nkind = "netft"\nhost = "192.0.2.10"\n'
 ACTUATOR = '[actuator]\nkind = "lac"\nstroke = "50 mm"\n'
@@ -118,3 +124,23 @@ def test_the_rig_of_the_demonstration_says_what_is_pressed() -> None:
     assert deepest <= read_sheet("phantom").depth[-1]
     plain = load_rig("simulated").rig
     assert (plain.force, plain.camera, plain.actuator) == (loaded.rig.force, loaded.rig.camera, loaded.rig.actuator)
+
+
+def models(annotation):
+    """Each model in an annotation, and in the fields of these."""
+    if isinstance(annotation, type) and issubclass(annotation, StrictModel):
+        yield annotation
+        for field in annotation.model_fields.values():
+            yield from models(field.annotation)
+    for part in typing.get_args(annotation):
+        yield from models(part)
+
+
+def test_the_manual_has_every_key():
+    """It sent the reader to a page on which no key of a rig stood."""
+    manual = (Path(__file__).parents[3] / "docs" / "bench.md").read_text()
+    section = manual.partition("## A rig file, key by key")[2].partition("## Safety")[0]
+    known = set(re.findall(r"`\[{0,2}(\w+)\]{0,2}`", section))
+    inside = [model for root in (Rig, SpecimenFile) for model in models(root)]
+    assert {field.alias or name for each in inside for name, field in each.model_fields.items()} <= known
+    assert set(typing.get_args(ScheduledFault.model_fields["kind"].annotation)) <= known

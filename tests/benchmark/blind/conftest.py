@@ -38,9 +38,12 @@ def an_answer(
     )
 
 
-@pytest.fixture(scope="session", autouse=True)
+@pytest.fixture(scope="module", autouse=True)
 def quick_presses() -> Iterator[None]:
-    """Presses on coarse meshes in few steps: the blind trials' logic needs no converged bodies."""
+    """Presses on coarse meshes in few steps: the blind trials' logic needs no converged bodies.
+
+    For a module's time, so that tests of other folders do not find them.
+    """
     with pytest.MonkeyPatch.context() as patch:
         for name, value in (("SHEET_MESH", "coarse"), ("SKIN_MESH", "coarse"), ("COARSE_STEPS", 5)):
             patch.setattr(presses, name, value)
@@ -56,6 +59,6 @@ def answer() -> Callable[..., Discovery]:
     return an_answer
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def saturation() -> BlindCase:
     return make_case(CaseName("effect", "force_saturation", 0))

@@ -100,6 +100,17 @@ def test_equal_pairs_are_one_and_a_constant_has_none(triangle):
     assert "constant" in constant.note
 
 
+@given(st.integers(0, 200), st.floats(-16.0, -5.0), st.integers(0, 2))
+def test_pairs_that_are_nearly_equal_have_an_interval_round_the_coefficient(seed, digits, kind):
+    generator = np.random.default_rng(seed)
+    first = generator.uniform(0.0, 3e-3, size=40)
+    off = 10.0**digits * (generator.normal(size=40) if kind == 0 else 1.0)
+    second = first + 1e-3 * off if kind == 1 else first * (1.0 + off)
+    result = concordance(first, second)
+    assert result.ci95_low <= result.coefficient <= result.ci95_high <= 1.0
+    assert result.coefficient > 1.0 - 1e-7
+
+
 def test_without_correlation_there_is_no_interval():
     result = concordance([1.0, 1.0, -1.0, -1.0], [1.0, -1.0, 1.0, -1.0])
     assert result.coefficient == 0.0

@@ -160,6 +160,13 @@ def test_a_fading_force_is_time_dependence_without_a_name(fading_trial, silicone
     assert not EFFECTS.search(text + " ".join(fit.notes))
 
 
+def test_contact_at_an_end_of_what_the_forces_allow_is_told(trial, silicone):
+    drifting = [trial(str(seed), noise=0.002, seed=seed) for seed in range(3)]
+    drifting = [replace(one, force=one.force + 0.4 * one.force.max() * np.minimum(one.time, 2.0)) for one in drifting]
+    text = " ".join(fit_session(drifting, [silicone]).warnings)
+    assert "the contact of 3 of 3 trials lies at an end" in text
+
+
 def test_what_a_fit_with_relaxation_need_not_say(fading_trial, silicone):
     fit = fit_session([fading_trial(g=0.6, seed=n, name=str(n)) for n in range(2)], [silicone])
     elastic = elastic_only(fit.trials)

@@ -1,5 +1,7 @@
 """Where a trial's force rises, what is noise, and what falls in a hold."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -26,6 +28,18 @@ def test_the_true_onset_and_zero_lie_in_the_range(trial, onset, noise):
 def test_quiet_data_bound_the_onset_tightly(trial):
     made = trial(onset=1e-3)
     assert contact_range(made.depth, made.force).high - 1e-3 < 3e-4
+
+
+@pytest.mark.parametrize("drift", [-0.04, 0.02, 0.04, 0.1])
+@pytest.mark.parametrize("noise", [0.0005, 0.005])
+def test_a_sensor_that_drifts_in_the_air_does_not_end_the_range_before_the_contact(trial, drift, noise):
+    """The force rises or falls by a share of its peak until contact, 1 mm below where the trial begins."""
+    made = trial(onset=5e-4, noise=noise)
+    before = made.depth[:41] < 5e-4
+    touch = made.time[:41][before].max()
+    drifted = replace(made, force=made.force + drift * made.force.max() * made.time / touch)
+    allowed = contact_range(drifted.depth, drifted.force)
+    assert allowed.low < 5e-4 < allowed.high
 
 
 def test_required_depth_covers_every_allowed_onset(trial):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import fem
-from fem.analysis.limit_points import LEAST_GAIN, MOST_LOST, Account, creep
+from fem.analysis.limit_points import LEAST_GAIN, MOST_LOST, NONE_NEAR, Account, creep, follows, is_unstable
 from fem.analysis.newton import NewtonSettings, solve_newton
 from fem.analysis.stepping import Stepper
 
@@ -56,7 +56,7 @@ def test_a_way_through_an_element_inside_out_is_not_known():
 def test_an_account_is_overdrawn_over_its_share_of_the_most_work():
     assert not Account(0.1, 1.0, 0.99 * MOST_LOST).overdrawn
     assert Account(0.1, 1.0, 1.01 * MOST_LOST).overdrawn
-    made = Account(0.5, 1.0, 0.01, 3)
+    made = Account(0.5, 1.0, 0.01, 3, 2)
     assert Account.of_row(made.row) == made
 
 
@@ -73,3 +73,86 @@ def test_a_creep_ends_in_the_equilibrium_that_newtons_method_finds():
     np.testing.assert_allclose(found.state.y, straight.state.y, atol=1e-10)
     assert after.crept == 1
     assert after.lost > before.lost - LEAST_GAIN * after.most
+
+
+BLOCK = (fem.Layer("a", 3e-3, 1e3, fem.NeoHookean(50e3, 0.48)), fem.Layer("b", 7e-3, 1e3, fem.NeoHookean(50e3, 0.48)))
+FILM = (
+    fem.Layer("soft", 2.29e-3, 1e3, fem.NeoHookean(106e3, 0.48)),
+    fem.Layer("stiff", 1.50e-3, 1e3, fem.NeoHookean(8.76e6, 0.45)),
+    fem.Layer("low", 0.21e-3, 1e3, fem.NeoHookean(335e3, 0.45)),
+)
+
+
+def block(layers=BLOCK, solver="auto"):
+    """A soft block under a pressure, which folds its surface at the edge at half of Young's modulus."""
+    tool = fem.Tool(5e-3, "uniform_pressure")
+    return fem.prepare(fem.Problem(layers, tool, fem.Support("bonded")), linear_solver=solver)
+
+
+def ramp(control, peak, steps):
+    return fem.Load(control, np.arange(1.0, steps + 1), peak * np.arange(1, steps + 1) / steps)
+
+
+@pytest.mark.parametrize("layers", [BLOCK, (replace(BLOCK[0], thickness=10e-3),)])
+def test_a_pressure_ends_where_its_force_is_largest_whatever_the_steps(layers):
+    """With 10, 40 and 100 rows it once came to 2.5, 3.6 and 3.4 mm, on states that nothing holds."""
+    found = [block(layers).run(ramp("force", 2.0, steps)) for steps in (4, 10, 40)]
+    for one in found:
+        assert not one.complete
+        assert NONE_NEAR in one.failure.reason
+        assert "a press by depth may go on" in one.failure.reason
+        assert one.failure.reached == pytest.approx(1.846, rel=5e-3)
+        assert (np.diff(one.depth) > 0.0).all()
+        assert not any("not stable" in said for said in one.warnings)
+    at = [np.flatnonzero(np.isclose(one.force, 1.5))[0] for one in (found[0], found[2])]
+    assert found[0].depth[at[0]] == pytest.approx(found[2].depth[at[1]], rel=1e-9)
+
+
+def test_a_press_by_depth_goes_on_with_stable_states():
+    found = block().run(ramp("depth", 3.6e-3, 40))
+    assert found.complete
+    assert not any("not stable" in said for said in found.warnings)
+    assert (np.diff(found.depth) > 0.0).all()
+    assert found.force.max() == pytest.approx(1.85, rel=0.01)
+
+
+def test_what_bends_off_a_stable_way_is_said():
+    """A film that would wrinkle goes on as it was, which nothing holds: the press is told from where on."""
+    found = block(FILM).run(ramp("force", 5.0, 25))
+    assert found.complete
+    said = next(text for text in found.warnings if "not stable" in text)
+    force, depth = float(said.split(" N ")[0].split()[-1]), float(said.split(" mm ")[0].split()[-1])
+    assert 4.4 < force < 4.7
+    assert depth == pytest.approx(np.interp(force, found.force, 1e3 * found.depth), rel=0.01)
+
+
+def test_a_resumed_press_still_says_so(tmp_path):
+    load, kept = ramp("force", 5.0, 25), tmp_path / "kept.npz"
+    whole = block(FILM).run(load, checkpoint=kept)
+    again = block(FILM).run(load, checkpoint=kept)
+    assert again.resumed.steps == 25
+    assert again.warnings == whole.warnings
+
+
+def test_a_state_follows_another_on_the_same_way_only():
+    stepper = Stepper(block().equilibrium, "force", 1e-3, SETTINGS)
+    for force in (0.5, 1.0, 1.5):
+        assert not stepper.advance(force).reason
+    problem, (_, first, second, third) = stepper.problem, stepper.known.states
+    assert follows(problem, first, second, 0.5)
+    assert follows(problem, second, second, 0.0)
+    assert follows(problem, third, second, 1.0 / 3.0)
+    assert not follows(problem, second, replace(third, y=1.3 * third.y), 1.0 / 3.0)
+    assert not follows(problem, second, replace(third, y=-30.0 * third.y), 1.0 / 3.0)
+    assert not is_unstable(problem, third, "force")
+
+
+@pytest.mark.parametrize("solver", ["pardiso", "superlu"])
+def test_every_solver_sees_that_nothing_holds_a_state(solver):
+    """The state at rest of a block whose layers would rather grow: all stiffness with its sign turned."""
+    problem = block(solver=solver).equilibrium
+    rest = problem.system.evaluate(*problem.system.rest())
+    problem.factorise(rest)
+    assert problem.solver.negative == 0
+    problem.solver.factorise(-problem.system.tangent(rest))
+    assert problem.solver.negative == len(problem.unit_load)

@@ -43,3 +43,26 @@ def test_other_limits_of_threads_do_not_reach_between_the_phases(count):
         solver.factorise(data)
         x = solver.solve(np.ones((count, 1)))[:, 0]
     np.testing.assert_allclose(4 * x[1:-1] + x[:-2] + x[2:], 1.0, rtol=1e-12)
+
+
+@pytest.mark.parametrize("choice", ["pardiso", "superlu"])
+@pytest.mark.parametrize("seed", range(8))
+def test_negative_eigenvalues_are_counted_or_not_told(choice, seed):
+    """Against LAPACK's eigenvalues, of dense symmetric matrices with any signs."""
+    draw = np.random.default_rng(seed)
+    count = 24
+    half = draw.normal(size=(count, count)) + np.diag(draw.choice((-12.0, 12.0), count))
+    matrix = half + half.T
+    row, column = np.triu_indices(count)
+    indptr = np.append(0, np.cumsum(np.bincount(row)))
+    solver = make_solver(choice, indptr, column)
+    solver.factorise(matrix[row, column])
+    expected = int((np.linalg.eigvalsh(matrix) < 0.0).sum())
+    assert solver.negative in ((expected,) if choice == "pardiso" else (expected, None))
+
+
+def test_a_matrix_without_negative_eigenvalues_is_known_by_every_solver():
+    for choice in ("pardiso", "superlu"):
+        solver = make_solver(choice, np.array([0, 2, 3]), np.array([0, 1, 1]))
+        solver.factorise(np.array([2.0, 1.0, 2.0]))
+        assert solver.negative == 0

@@ -94,6 +94,15 @@ def test_colour_becomes_grey_and_the_rate_can_be_given(video):
     assert frames[5].time == 0.05
 
 
+@pytest.mark.parametrize(
+    ("name", "codec", "said"),
+    [("a.mp4", "mp4v", "FMP4"), ("a.webm", "VP80", "VP80"), ("a.avi", "MJPG", ""), ("a.mkv", "FFV1", "")],
+)
+def test_a_codec_that_keeps_differences_between_pictures_is_told(video, name, codec, said):
+    notes = VideoFrames(video([np.dstack([p, p, p]) for p in pictures()], name, codec)).notes()
+    assert [f"({said})" in note for note in notes if "picture to picture" in note] == [True] * bool(said)
+
+
 def test_a_cut_video_gives_what_is_there_and_says_so(video):
     path = video(pictures(30))
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])

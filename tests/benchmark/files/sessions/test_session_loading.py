@@ -413,6 +413,17 @@ def test_a_trial_that_is_added_but_not_listed_is_told_of(session_folder, write_t
     assert said.startswith("not listed in session.toml and left aside: three.csv; ")
 
 
+def test_a_film_that_no_trial_names_is_told_of(tmp_path, write_trial):
+    """A folder of forces, a film and a camera's file was proposed, and fitted, without a word of the film."""
+    write_trial(tmp_path / "one.csv")
+    (tmp_path / "film.MP4").write_bytes(b"")
+    for warnings in (load_session(tmp_path).warnings, propose(tmp_path).warnings):
+        (said,) = [each for each in warnings if "film" in each]
+        assert said.startswith("films that no trial names are left aside: film.MP4; ")
+        assert 'film = "film.MP4" in the [[trials]] it belongs to' in said
+    assert not any("film" in each for each in load_session(tmp_path / "one.csv").warnings)
+
+
 def test_what_a_proposal_assumed_is_told_until_somebody_says_it(tmp_path, write_trial):
     """With the proposed files in the folder nothing was said to be assumed any more."""
     write_trial(tmp_path / "one.csv")
