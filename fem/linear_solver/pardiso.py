@@ -128,8 +128,11 @@ class PardisoSolver:
         return self.way.is_single
 
     @property
-    def negative(self) -> int:
-        """Negative eigenvalues of what was factorised last (Sylvester's law of inertia)."""
+    def negative(self) -> int | None:
+        """Negative eigenvalues of what was factorised last (Sylvester's law of inertia).
+
+        None where single factors are not Cholesky's: what they lack may be digits.
+        """
         return self._factors.negative
 
     def factorise(self, data: FloatArray) -> None:
@@ -240,9 +243,11 @@ class Factors:
         self._call(FACTORISE, self._nothing)
 
     @property
-    def negative(self) -> int:
-        """Negative eigenvalues of what was factorised last."""
-        return 0 if self._way.kind == POSITIVE_DEFINITE else int(self._solver.iparm[NEGATIVE])
+    def negative(self) -> int | None:
+        """Negative eigenvalues of what was factorised last, as far as the factors tell."""
+        if self._way.kind == POSITIVE_DEFINITE:
+            return 0
+        return None if self._way.is_single else int(self._solver.iparm[NEGATIVE])
 
     def solve(self, right: FloatArray) -> FloatArray:
         """Solution (n, k) of right-hand sides (n, k)."""

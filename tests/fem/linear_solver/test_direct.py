@@ -49,6 +49,8 @@ def test_other_limits_of_threads_do_not_reach_between_the_phases(count):
 @pytest.mark.parametrize("seed", range(8))
 def test_negative_eigenvalues_are_counted_or_not_told(choice, seed):
     """Against LAPACK's eigenvalues, of dense symmetric matrices with any signs."""
+    if choice == "pardiso":
+        pytest.importorskip("fem.linear_solver.pardiso", exc_type=ImportError)
     draw = np.random.default_rng(seed)
     count = 24
     half = draw.normal(size=(count, count)) + np.diag(draw.choice((-12.0, 12.0), count))
@@ -61,8 +63,17 @@ def test_negative_eigenvalues_are_counted_or_not_told(choice, seed):
     assert solver.negative in ((expected,) if choice == "pardiso" else (expected, None))
 
 
+@pytest.mark.parametrize(("sign", "expected"), [(1.0, 0), (-1.0, None)])
+def test_single_factors_tell_of_a_positive_definite_matrix_only(sign, expected):
+    pardiso = pytest.importorskip("fem.linear_solver.pardiso", exc_type=ImportError)
+    solver = pardiso.PardisoSolver(np.array([0, 2, 3]), np.array([0, 1, 1]), single_from=1)
+    solver.factorise(sign * np.array([2.0, 1.0, 2.0]))
+    assert solver.is_single
+    assert solver.negative == expected
+
+
 def test_a_matrix_without_negative_eigenvalues_is_known_by_every_solver():
-    for choice in ("pardiso", "superlu"):
+    for choice in ("auto", "superlu"):
         solver = make_solver(choice, np.array([0, 2, 3]), np.array([0, 1, 1]))
         solver.factorise(np.array([2.0, 1.0, 2.0]))
         assert solver.negative == 0
