@@ -27,6 +27,8 @@ SHRINKAGE = 0.5  # of the change by each further state; where it is less, the or
 LEAST_SPACING = 0.3
 KEPT = 3
 SAME_RATE = 1e-6
+LEAST_STEP = 0.05
+"""Of a step of the load, the least that the one before must be to tell its direction: what fades in time is more."""
 MOST_STRAIGHTENED = 4
 """Rounds in which elements get straight sides, since a neighbour may turn inside out by it."""
 
@@ -135,7 +137,7 @@ class RecentStates:
         steps, durations = np.diff(values), np.diff(times)
         if len(states) == KEPT and durations.min() > 0.0 and _steady(steps / durations):
             return combined(lagrange(times[:-1], time), states)
-        ratio = steps[-1] / steps[-2] if steps[-2] != 0.0 else 0.0
+        ratio = steps[-1] / steps[-2] if abs(steps[-2]) > LEAST_STEP * abs(steps[-1]) else 0.0
         return combined(np.array([-ratio, 1.0 + ratio]), states[-2:])
 
 

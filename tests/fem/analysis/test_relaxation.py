@@ -89,3 +89,18 @@ def test_prediction_follows_the_rate():
     assert known.predict(6.0, 3.0).y[0] == pytest.approx(9.0)
     assert known.predict(4.0, 3.0).y[0] == pytest.approx(4.0)
     assert known.predict(2.0, 3.0).y[0] == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("control", ["depth", "force"])
+@pytest.mark.parametrize("apart", [2e-16, 1e-10, 1e-6, 1e-4])
+def test_two_loads_that_are_nearly_the_same_tell_no_direction(control, apart):
+    """A sine of 40 rows once stopped where two of them differed by rounding: an element turned inside out."""
+    layer = fem.Layer("a", 15e-3, 1e3, fem.NeoHookean(44.7e3, 0.49), (fem.PronyTerm(0.4, 0.3),))
+    model = fem.prepare(fem.Problem((layer,), fem.Tool(5e-3, "rigid_bonded"), fem.Support("bonded")))
+    most, time = {"depth": 2e-3, "force": 0.5}[control], 0.2 * np.arange(1.0, 6.0)
+    near, same = (
+        model.run(fem.Load(control, time, most * np.array([0.5, 1.0, 1.0 + more, 0.5, 0.25]))) for more in (apart, 0.0)
+    )
+    assert near.complete
+    assert near.force == pytest.approx(same.force, rel=1e-6 + 20.0 * apart)
+    assert near.depth == pytest.approx(same.depth, rel=1e-6 + 20.0 * apart)
