@@ -67,6 +67,7 @@ def _prepared(scenario: Scenario, large_press: str, *, to_peak: bool = False) ->
         discretisation=WaveDiscretisation(window=scenario.wave.window, modes=scenario.wave.modes),
         support=scenario.support.kind,
         relaxation=wave_relaxation(scenario),
+        relaxing="shape",
         large_press=large_press,
         pretension=scenario.physics.pretension,
         physics=wave_physics(scenario),

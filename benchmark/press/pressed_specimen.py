@@ -151,6 +151,7 @@ def _layered(scenario: Scenario) -> tuple[LayeredWave, tuple[str, ...]]:
             wave_layers(scenario.tissue.layers),
             wave_tool(scenario),
             relaxation=wave_relaxation(scenario),
+            relaxing="shape",
             pretension=scenario.physics.pretension,
             large_press=large_press,
         )

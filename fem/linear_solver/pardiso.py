@@ -45,9 +45,9 @@ from pypardiso.pardiso_wrapper import PyPardisoError  # noqa: E402
 
 POSITIVE_DEFINITE, INDEFINITE = 2, -2
 ANALYSE, FACTORISE, SOLVE = 11, 22, 33
-# iparm by its number from 0: own values, METIS, two steps of refinement only where pivots were perturbed, by 1e-8,
+# iparm by its number from 0: own values, METIS, two steps of refinement only where pivots were perturbed, by 1e-13,
 # Bunch-Kaufman pivots. By default refinement takes its two steps every time.
-CONTROLS = MappingProxyType({0: 1, 1: 2, 7: 0, 9: 8, 20: 1})
+CONTROLS = MappingProxyType({0: 1, 1: 2, 7: 0, 9: 13, 20: 1})
 # Two-level factorisation of variable blocks: unknowns that are alike to 80 %, those of a node, are analysed as one.
 BLOCKS = MappingProxyType({23: 1, 36: -80})
 SINGLE_PRECISION = 27  # of iparm, 1 for single

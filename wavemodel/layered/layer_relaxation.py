@@ -5,11 +5,12 @@ is stationary against what creep shifts it by; the face under the tool does not 
 half of its modulus and its neighbour a fifth, the depth is 0.3 % and the face 3 % off.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 
 import numpy as np
+from numpy.polynomial import Polynomial
 
 from wavemodel.arrays import FloatArray
 from wavemodel.errors import NotCoveredError, WaveError
@@ -23,6 +24,9 @@ from wavemodel.layered.stack.compliance import exact_faces, layer_faces, quadrat
 from wavemodel.layered.stack.creep import LagNodes, StackCreep, lag_nodes, stack_creep
 from wavemodel.layered.stack.laminate import Laminate, laminate
 from wavemodel.specimen import WaveLayer
+
+LEAST_VOLUME = 5e-4
+"""0.5 less Poisson's ratio, below which a layer does not change its volume, and shape is all that relaxes."""
 
 
 def series_of(relaxation: Prony | Sequence[Prony | None] | None, layers: int) -> tuple[Prony, ...]:
@@ -64,6 +68,90 @@ def one_series(series: tuple[Prony, ...]) -> Prony:
             "all layers, or the integrator 'quasi_static'"
         )
     return common
+
+
+def of_shape(
+    layers: Sequence[WaveLayer], series: Sequence[Prony], compliance: Callable[[Sequence[WaveLayer]], float]
+) -> tuple[Prony, ...]:
+    """Series by which all moduli relax so that the tool loses the force that it does where bulk moduli stay.
+
+    Of layers that share a series, by the correspondence principle (R. M. Christensen, Theory of Viscoelasticity, 1982,
+    section 2.2) of the elastic stiffness over the shear moduli, a ratio of straight lines through three presses. Of
+    layers that differ, each one's loss after an endless hold is scaled to that of two presses, and the times stay.
+
+    Parameters
+    ----------
+    layers
+        L, with their initial moduli.
+    series
+        L, of their shear moduli.
+    compliance
+        Depth per force, m/N, of an elastic press on layers like these.
+    """
+    relaxing = [n for n, one in enumerate(series) if one.strength and _changes_volume(layers[n])]
+    if not relaxing:
+        return tuple(series)
+    initial = compliance(layers)
+    if shared(tuple(series)) is not None:
+        lost = 1.0 - series[0].long_term
+        middle, last = (initial / compliance([_softer_in_shape(one, g) for one in layers]) for g in (0.5 * lost, lost))
+        return (_corresponding(series[0], middle, last),) * len(layers)
+    out = list(series)
+    for n in relaxing:
+        lost = 1.0 - series[n].long_term
+        moduli, shape = (
+            compliance([*layers[:n], change(layers[n], lost), *layers[n + 1 :]])
+            for change in (_softer, _softer_in_shape)
+        )
+        out[n] = _scaled(series[n], (1.0 - initial / shape) / (1.0 - initial / moduli))
+    return tuple(out)
+
+
+def _changes_volume(layer: WaveLayer) -> bool:
+    return 0.5 - layer.poisson_ratio >= LEAST_VOLUME
+
+
+def _scaled(series: Prony, share: float) -> Prony:
+    return Prony(tuple(min(share, 1.0) * g for g in series.strength), series.time)
+
+
+def _corresponding(series: Prony, middle: float, last: float) -> Prony:
+    """The series of a stiffness k(m), of a share m of the shear modulus, that relaxes with it.
+
+    Parameters
+    ----------
+    series
+        Of m, from 1 to m1 in the end.
+    middle, last
+        k half-way to m1 and at m1, over k(1).
+    """
+    end = series.long_term
+    shares, found = np.array([1.0, 0.5 * (1.0 + end), end]), np.array([1.0, middle, last])
+    p, q, r = np.linalg.solve(np.column_stack((np.ones(3), shares, -found * shares)), found)
+    whole = Polynomial([1.0])
+    for time in series.time:
+        whole *= Polynomial([1.0, time])
+    left = whole
+    for g, time in zip(series.strength, series.time, strict=True):
+        left = left - g * (whole // Polynomial([1.0, time]))
+    below, above = whole + r * left, p * whole + q * left
+    rates = below.roots()
+    strength = above(rates) / (rates * below.deriv()(rates))
+    if np.iscomplexobj(rates) or (rates >= 0.0).any() or (strength <= 0.0).any():
+        return _scaled(series, (1.0 - last) / (1.0 - end))
+    return Prony(tuple(strength), tuple(-1.0 / rates))
+
+
+def _softer(layer: WaveLayer, lost: float) -> WaveLayer:
+    """The layer without a share of its moduli."""
+    return replace(layer, youngs_modulus=(1.0 - lost) * layer.youngs_modulus, law=None)
+
+
+def _softer_in_shape(layer: WaveLayer, lost: float) -> WaveLayer:
+    """The layer without a share of its shear modulus, with the bulk modulus as it was."""
+    shear, bulk = (1.0 - lost) * layer.shear_modulus, layer.lame_modulus + layer.shear_modulus * 2.0 / 3.0
+    modulus, ratio = 9.0 * bulk * shear / (3.0 * bulk + shear), (3.0 * bulk - 2.0 * shear) / (6.0 * bulk + 2.0 * shear)
+    return replace(layer, youngs_modulus=modulus, poisson_ratio=ratio, law=None)
 
 
 def static_body(

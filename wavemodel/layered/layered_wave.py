@@ -7,7 +7,7 @@ It is linear, small strain, unless finite strain or options of the body are aske
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from wavemodel.layered.body_options import finite_strain_of, options_of, with_sl
 from wavemodel.layered.dynamics import first_frequency, modal_system, ringing
 from wavemodel.layered.face_motion import LayeredFaces
 from wavemodel.layered.field import ModalState
-from wavemodel.layered.layer_relaxation import one_series, series_of, shared, static_body
+from wavemodel.layered.layer_relaxation import of_shape, one_series, series_of, shared, static_body
 from wavemodel.layered.notices import notices
 from wavemodel.layered.press import Press, prepare
 from wavemodel.layered.shear_limit import ShearLimit
@@ -37,6 +37,7 @@ from wavemodel.specimen import DiscTool, WaveLayer
 SLOW = 0.02
 """A load is slow if inertia changes the deflection by no more than about this share of its peak."""
 INTEGRATORS = ("auto", "quasi_static", "exact")
+RELAXING = ("moduli", "shape")
 
 
 class LayeredWave:
@@ -78,6 +79,10 @@ class LayeredWave:
     slip
         A `ShearLimit`: an interface, or the clamp of the lowest face, that is bonded up to a shear stress and then
         slides at it; no inertia. None: bonded for good.
+    relaxing
+        "moduli": a series is of all moduli of a layer alike, and Poisson's ratio stays. "shape": it is of the shear
+        modulus alone, as in the finite elements; the tool then loses that much force in an endless hold
+        (`layer_relaxation.of_shape`), while fields keep their form.
 
     Attributes
     ----------
@@ -110,15 +115,21 @@ class LayeredWave:
         large_press: str = "auto",
         physics: Physics | None = None,
         slip: ShearLimit | None = None,
+        relaxing: str = "moduli",
     ) -> None:
         if integrator not in INTEGRATORS:
             raise WaveError(f"integrator = {integrator!r} is not allowed: one of {', '.join(INTEGRATORS)}")
+        if relaxing not in RELAXING:
+            raise WaveError(f"relaxing = {relaxing!r} is not allowed: one of {', '.join(RELAXING)}")
         self.layers, self.tool = tuple(layers), tool
         self.integrator, self.damping = integrator, damping or Damping()
         self.relaxation = series_of(relaxation, len(self.layers))
         stress = in_plane_stress(pretension, len(layers))
         touched = tool if large_press == "linear" or integrator == "exact" else tool.at_first_touch
-        elastic = prepare(self.layers, touched, _base(support), discretisation, stress)
+        made = partial(prepare, tool=touched, base=_base(support), chosen=discretisation, stress=stress)
+        elastic = made(self.layers)
+        if relaxing == "shape":
+            self.relaxation = of_shape(self.layers, self.relaxation, lambda changed: made(changed).compliance)
         self.body: StaticBody
         self.press: Press
         self.body, self.press = static_body(elastic, self.layers, tool.rigid, self.relaxation, self.damping)

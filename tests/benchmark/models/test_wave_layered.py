@@ -80,3 +80,24 @@ def test_a_press_beyond_the_usual_range_is_followed_deep() -> None:
     assert FALLEN not in " ".join(found.warnings)
     later = prepare("wave", load_scenario("skin-5N", SHORT)).run(drive)
     np.testing.assert_allclose(later.depth, found.depth, rtol=1e-12)
+
+
+@pytest.mark.parametrize("control", ["depth", "force"])
+@pytest.mark.parametrize("layers", ["shared", "own"])
+def test_a_hold_relaxes_as_the_finite_elements_do_whose_volume_does_not(control: str, layers: str, tmp_path) -> None:
+    """With all moduli relaxing alike a compressible layer as thick as the tool's radius was 10 to 20 % off."""
+    tissue = tmp_path / "tissue.toml"
+    layer = '[[layers]]\nname = "{}"\nthickness = "{} mm"\ndensity = "1000 kg/m^3"\nyoungs_modulus = "{} kPa"\n'
+    fading = 'relaxation = [{ g = 0.4, tau = "1 s" }]\n'
+    rows = [("upper", 2, 100), ("lower", 4, 20)]
+    text = "".join(layer.format(*row) + "poisson_ratio = 0.4\n{}" for row in rows)
+    tissue.write_text('schema = 1\nname = "one"\n' + text.format(fading if layers == "shared" else "", fading))
+    settings = {
+        "tissue": str(tissue), "tool.contact": "rigid_bonded", "fem.kinematics": "linear", "load.shape": "ramp_hold",
+        "load.duration": "1 s", "load.hold": "9 s", "load.control": control, "load.observations": "60",
+        "load.peak": {"depth": "0.05 mm", "force": "0.05 N"}[control],
+    }  # fmt: skip
+    scenario = load_scenario("skin-5N", settings)
+    wave, fem = (prepare(name, scenario).run(scenario_drive(scenario)) for name in ("wave", "fem"))
+    found, wanted = (wave.force, fem.force) if control == "depth" else (wave.depth, fem.depth)
+    assert np.abs(found - wanted).max() < (0.003 if layers == "shared" else 0.006) * wanted.max()

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import fem
+from fem.analysis.linear import balance_warning
 from fem.analysis.newton import NewtonSettings
 
 CONTACTS = ("uniform_pressure", "rigid_bonded")
@@ -202,3 +203,28 @@ def test_importing_the_package_loads_no_numerical_library():
     code = "import sys, fem; print(sorted({m.split('.')[0] for m in sys.modules} & {'scipy', 'skfem', 'pypardiso'}))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize("thinness", [0.001, 0.002, 0.004, 0.01])
+def test_a_very_thin_sheet_over_a_wide_hole_is_a_clamped_plate(thinness):
+    """Perturbed pivots had left its equations unsolved: 0.2 of the plate's depth, the wrong way, and no warning.
+
+    Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells, 1959, chapter 3: a load spread over a concentric disc.
+    """
+    hole, radius, modulus, nu = 50e-3, 10e-3, 1e6, 0.3
+    h = thinness * hole
+    stiffness = modulus * h**3 / (12.0 * (1.0 - nu**2))
+    plate = hole**2 - radius**2 * (np.log(hole / radius) + 0.75)
+    force = 1e-3 * h * 16.0 * np.pi * stiffness / plate
+    layer = fem.Layer("sheet", h, 1e3, fem.LinearElastic(modulus, nu))
+    support = fem.Support("hole", hole, clamp="rim")
+    problem = fem.Problem((layer,), fem.Tool(radius, "uniform_pressure"), support, kinematics="linear")
+    found = fem.prepare(problem).run(fem.Load("force", [1.0], [force]))
+    assert found.depth[0] == pytest.approx(1e-3 * h, rel=6e-3)
+    assert found.reaction[0] == pytest.approx(force, rel=1e-3)
+    assert found.warnings == ()
+
+
+def test_supports_that_do_not_hold_the_force_are_told_of():
+    assert balance_warning(1.0 + 1e-4) == balance_warning(1.0 - 1e-4) == ()
+    assert "hold -12 % of the tool's force" in balance_warning(-0.12)[0]

@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.linalg import expm
 
 from wavemodel import Damping, DiscTool, LayeredWave, NotCoveredError, Prony, WaveDiscretisation, WaveError, WaveLayer
 from wavemodel.layered.dynamics import assemble
-from wavemodel.layered.layer_relaxation import one_series, series_of, shared
+from wavemodel.layered.layer_relaxation import _corresponding, of_shape, one_series, series_of, shared
 from wavemodel.layered.stack.sublayers import quadratic_stiffness
 
 SERIES = Prony((0.3,), (1.0,))
@@ -208,3 +210,58 @@ def test_refuses(skin):
         LayeredWave(skin(), DiscTool(5e-3), relaxation=[None, None], large_press="linear")
     with pytest.raises(NotCoveredError, match="each in its own way"):
         LayeredWave(skin(), DiscTool(5e-3), relaxation=EACH, integrator="exact", large_press="linear")
+
+
+@given(st.floats(0.05, 0.9), st.floats(0.0, 0.95), st.floats(1e-3, 1e3))
+def test_a_standard_solid_in_series_with_a_spring_is_one_with_another_time(g, spring, time):
+    """Compliances add: k = 1 / (a + (1 - a) / m) relaxes with tau / (1 - a g) (Christensen 1982, section 1.6)."""
+    at = [1.0 / (spring + (1.0 - spring) / m) for m in (1.0 - 0.5 * g, 1.0 - g)]
+    found = _corresponding(Prony((g,), (time,)), *at)
+    assert found.time == pytest.approx((time / (1.0 - spring * g),))
+    assert found.long_term == pytest.approx(at[1])
+
+
+@given(st.floats(0.0, 0.95), st.lists(st.floats(0.05, 0.3), min_size=1, max_size=3))
+def test_a_spring_beside_takes_its_share_and_no_time(beside, strength):
+    series = Prony(tuple(strength), tuple(0.1 * 7.0**n for n in range(len(strength))))
+    at = [beside + (1.0 - beside) * m for m in (0.5 * (1.0 + series.long_term), series.long_term)]
+    found = _corresponding(series, *at)
+    order = np.argsort(found.time)
+    assert np.array(found.time)[order] == pytest.approx(series.time)
+    assert np.array(found.strength)[order] == pytest.approx((1.0 - beside) * np.array(strength))
+
+
+def test_the_series_of_a_stack_follows_its_elastic_stiffness():
+    """Along the way, by the definition of the correspondence: s times the transform of the relaxation is k(m(s))."""
+    layers = [WaveLayer("a", 2e-3, 1e3, 1e5, 0.40), WaveLayer("b", 4e-3, 1e3, 3e4, 0.45)]
+    series, tool = Prony((0.3, 0.4), (0.3, 5.0)), DiscTool(5e-3, "rigid_bonded")
+
+    def compliance(changed):
+        return LayeredWave(changed, tool, large_press="linear").press.compliance
+
+    def of_modulus(left):
+        changed = []
+        for one in layers:
+            shear, bulk = left * one.shear_modulus, one.lame_modulus + 2.0 * one.shear_modulus / 3.0
+            ratio = (3.0 * bulk - 2.0 * shear) / (6.0 * bulk + 2.0 * shear)
+            changed.append(WaveLayer(one.name, one.thickness, 1e3, 2.0 * shear * (1.0 + ratio), ratio))
+        return compliance(layers) / compliance(changed)
+
+    def transform(one, s):
+        return 1.0 - sum(g / (1.0 + s * time) for g, time in zip(one.strength, one.time, strict=True))
+
+    found = of_shape(layers, (series, series), compliance)
+    assert found[0] == found[1]
+    for s in (1e-3, 0.05, 0.3, 1.0, 5.0, 1e3):
+        assert transform(found[0], s) == pytest.approx(of_modulus(transform(series, s)), rel=2e-3)
+
+
+def test_layers_that_keep_their_volume_or_do_not_relax_stay_as_they_are():
+    layers = [WaveLayer("a", 2e-3, 1e3, 1e5, 0.4999), WaveLayer("b", 4e-3, 1e3, 3e4, 0.45)]
+    series = (Prony((0.3,), (1.0,)), Prony())
+    assert of_shape(layers, series, pytest.fail) == series
+
+
+def test_what_relaxes_is_one_of_two():
+    with pytest.raises(WaveError, match="relaxing = 'bulk' is not allowed: one of moduli, shape"):
+        LayeredWave([WaveLayer("a", 2e-3, 1e3, 1e5, 0.4)], DiscTool(5e-3), relaxing="bulk")
