@@ -209,7 +209,7 @@ def test_importing_the_package_loads_no_numerical_library():
 def test_a_very_thin_sheet_over_a_wide_hole_is_a_clamped_plate(thinness):
     """Perturbed pivots had left its equations unsolved: 0.2 of the plate's depth, the wrong way, and no warning.
 
-    Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells, 1959, chapter 3: a load spread over a concentric disc.
+    A load on a concentric disc: Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells, 1959, chapter 3.
     """
     hole, radius, modulus, nu = 50e-3, 10e-3, 1e6, 0.3
     h = thinness * hole
