@@ -209,6 +209,9 @@ sees the touch by a force. The phantom session's touches scatter by 0.1 mm and w
 LARGE_SHARE, MOST_LARGE = 0.05, 4
 """Of peak force or depth, from which a trial's own zero or depth at touch is warned of, and how many are shown. First
 choice."""
+ODD_FOLD, ODD_SCATTER = 1.5, 5.0
+"""Times the others' stiffness, and robust standard deviations of what they scatter by, from which a trial is told of.
+First choice."""
 TOGETHER, FREE_TRAVEL = 4.0, 0.01
 """Standard errors of their mean, and share of the press, from which touches that are late together are warned of: a gap
 that their scatter hides. As many standard errors serve for time shifts. First choice."""

@@ -119,8 +119,11 @@ class Facts:
 
     @property
     def predicts(self) -> bool:
-        """Whether the effects predict some of what was held out better than the base does."""
-        return len(self.worse) < self.conditions and not self.grows
+        """Whether the effects predict some of what was held out better than the base does.
+
+        Surely, where they predict a condition worse: else what is gained elsewhere is no more than chance.
+        """
+        return len(self.worse) < self.conditions and not self.grows and (self.shrinks or not self.worse)
 
 
 def verdict(facts: Facts) -> str:

@@ -76,9 +76,14 @@ def trial_values(problem: TrialsProblem, nuisance: Array) -> tuple[TrialValues, 
 
 
 def large_remarks(problem: TrialsProblem, nuisance: Array) -> tuple[str, ...]:
-    """A warning of zeros, time shifts and depths at touch that are large: at a bound, or a share of peak or press."""
-    found = []
-    for trial, own in zip(problem.trials, trial_values(problem, nuisance), strict=True):
+    """A warning of zeros, time shifts and depths at touch that are large: at a bound, or a share of peak or press.
+
+    And of a trial that is much stiffer or softer than the others, beyond their scatter.
+    """
+    found, odd = [], _folds(nuisance[:, OWN.index("gain")])
+    for trial, own, fold in zip(problem.trials, trial_values(problem, nuisance), odd, strict=True):
+        if fold != 1.0:
+            found.append(f"{own.trial}: {fold:.2g} times as stiff as the others (another specimen, or a wrong unit?)")
         around = problem.study.conditions[trial.condition].around
         if abs(own.zero) > criteria.LARGE_SHARE * around.peak_force or "zero" in own.at_bound:
             found.append(f"{own.trial}: {own.zero:.3g} N at rest")
@@ -97,6 +102,13 @@ def large_remarks(problem: TrialsProblem, nuisance: Array) -> tuple[str, ...]:
     shown = "; ".join(found[: criteria.MOST_LARGE])
     more = f"; and {len(found) - criteria.MOST_LARGE} more" if len(found) > criteria.MOST_LARGE else ""
     return (f"trials have large values of their own, which may hide an effect: {shown}{more}", *together)
+
+
+def _folds(gain: Array) -> Array:
+    """(R,) times the median that trials of log gains (R,) are as stiff, 1 where that is within their scatter."""
+    away = gain - np.median(gain)
+    scatter = float(np.median(np.abs(away))) / 0.6745
+    return np.where(np.abs(away) > max(np.log(criteria.ODD_FOLD), criteria.ODD_SCATTER * scatter), np.exp(away), 1.0)
 
 
 def _late_together(problem: TrialsProblem, touch: Array) -> tuple[str, ...]:

@@ -179,6 +179,8 @@ def test_a_held_out_condition_predicted_worse_forbids_a_name_and_all_of_them_an_
     assert (verdict(one), verdict(both)) == ("partly_explained", "outside_catalogue")
     assert "fast is predicted worse" in statement("partly_explained", one)
     assert "predicts unseen data worse" in statement("outside_catalogue", both)
+    unsure = facts(worse=("fast",), shrinks=False)
+    assert verdict(unsure) == "outside_catalogue"
     single = facts(worse=("slow",), conditions=1, transfers=None)
     assert verdict(single) == "outside_catalogue"
 

@@ -80,6 +80,13 @@ def test_a_clock_that_is_far_too_late_is_followed_to_its_bound_and_said(problem)
 
 def test_what_is_small_is_not_warned_of(problem):
     assert large_remarks(problem, np.zeros((6, len(OWN)))) == ()
+    for fold, said in ((2.3, True), (0.4, True), (1.4, False)):
+        own = np.zeros((6, len(OWN)))
+        own[:, OWN.index("gain")] = np.random.default_rng(1).normal(0.0, 0.03, 6)
+        own[4, OWN.index("gain")] = np.log(fold)
+        assert any(f"{problem.trials[4].name}: " in text for text in large_remarks(problem, own)) is said
+    own[:, OWN.index("gain")] = np.log([1.0, 1.9, 0.5, 1.4, 2.1, 0.6])  # specimens that differ
+    assert not any("as stiff as" in text for text in large_remarks(problem, own))
 
 
 def test_touches_that_are_late_together_are_said(problem):
