@@ -9,10 +9,13 @@ import pytest
 
 from benchmark.cli.app import main
 from benchmark.errors import InputError
+from benchmark.files import load_scenario
 from benchmark.press.press_page import SIGN, PressRequest, render_press_page, specimens
+from benchmark.press.pressed_specimen import pressed_specimen
 from benchmark.runs.options import Listener
 from benchmark.runs.output.destination import check_file
 from tests.instruments.samples import press
+from wavemodel import DiscTool, LayeredWave, Prony, WaveLayer
 
 COARSE = {"fem.mesh": "coarse", "wave.large_press": "linear"}
 STIFFENING = """schema = 1
@@ -76,6 +79,20 @@ def test_a_model_file_stands_beside_the_model_as_it_was(tmp_path):
     share = one.wave.depth[-1] / one.scenario.tissue.thickness
     expected = one.wave.force[-1] * (1.0 + 0.7 * share + 6.3 * share**2)
     assert one.after.force[-1] == pytest.approx(expected, rel=1e-6)
+
+
+def test_a_compressible_layer_relaxes_on_the_page_as_in_a_run(tmp_path):
+    tissue = tmp_path / "tissue.toml"
+    tissue.write_text(
+        'schema = 1\nname = "one"\n[[layers]]\nname = "pad"\nthickness = "5 mm"\ndensity = "1000 kg/m^3"\n'
+        'youngs_modulus = "50 kPa"\npoisson_ratio = 0.4\nrelaxation = [{ g = 0.4, tau = "1 s" }]\n'
+    )
+    scenario = load_scenario("skin-5N", {**COARSE, "tissue": str(tissue), "load.peak": "0.2 N"})
+    pad, tool = WaveLayer("pad", 5e-3, 1000.0, 50e3, 0.4), DiscTool(scenario.tool.radius)
+    shape = LayeredWave([pad], tool, relaxation=Prony((0.4,), (1.0,)), relaxing="shape", large_press="linear")
+    found = pressed_specimen(scenario).memory.series
+    assert found.strength == pytest.approx(shape.relaxation[0].strength)
+    assert found.strength[0] < 0.37
 
 
 def test_a_shipped_session_is_pressed_by_its_name():
