@@ -25,10 +25,12 @@ LEAST_GAIN = 1e-5
 """Of the tool's work, above which energy is taken for gained and not for unbalanced by a tolerance."""
 GIVES_WAY = "the tissue gives way"
 NONE_NEAR = "no stable equilibrium is near: the tissue folds or gives way"
-BENT, LEAST_BENT = 0.3, 1e-3
+BENT, LEAST_BENT, MORE_BENT = 0.3, 1e-3, 3.0
 """Energy unbalanced on the straight way between two states, over the work, above which one does not follow the other:
 times the square of the step over the load, at least the second. Steps of a half to three quarters of the load, to 0.3
-of a skin, have 0.2 times that square and less; jumps, whose step may be as short as one likes, 0.008 and more."""
+of a skin, have 0.2 times that square and less, sheets that stretch, whose force goes with the cube, once: where the way
+from rest has so much, as many times that are let through. Jumps, whose step may be as short as one likes, have 0.008
+and more."""
 FIRST_DURATION = 1e-4
 """Of a creeping body's first step, in its own time (:func:`slowed`)."""
 MOST_CREEP = 100  # steps
@@ -120,10 +122,11 @@ def is_unstable(problem: Equilibrium, state: State, control: Literal["force", "d
     return negative > 0
 
 
-def follows(problem: Equilibrium, start: State, end: State, share: float) -> bool:
-    """Whether the second of two equilibria lies on the way on from the first, and not on another branch.
+def unbalanced_between(problem: Equilibrium, start: State, end: State) -> float:
+    """Energy that is unbalanced on the straight way between two equilibria, over the work.
 
-    On the straight way between them the internal forces do the work of the tool, but for terms of the third order.
+    On it the internal forces do the work of the tool, but for terms of the third order, where the second lies on the
+    way on from the first, and not on another branch. Infinite where the way turns an element inside out.
 
     Parameters
     ----------
@@ -131,18 +134,17 @@ def follows(problem: Equilibrium, start: State, end: State, share: float) -> boo
         The equations, of a body without a memory.
     start, end
         The equilibria.
-    share
-        Of the load, how far they are apart.
     """
     system, way = problem.system, end.y - start.y
     work = 0.5 * (start.force + end.force) * float(problem.unit_load @ way)
     middle = system.element_displacement(start.y + 0.5 * way)
     halfway = system.elements.evaluate(middle, system.elements.rest_pressure)
     if halfway is None:
-        return False
+        return np.inf
     taken = float(np.sum(halfway.force * system.scatter.gather(way)))
     rounding = LEAST_WORK * abs(end.force * float(problem.unit_load @ end.y))
-    return abs(taken - work) <= max(LEAST_BENT, BENT * share**2) * abs(work) + rounding
+    over = max(abs(taken - work) - rounding, 0.0)
+    return over / abs(work) if over > 0.0 else 0.0
 
 
 @dataclass(frozen=True)

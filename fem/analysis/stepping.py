@@ -10,7 +10,17 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from fem.analysis.equilibrium import Equilibrium, NewtonResult, State
-from fem.analysis.limit_points import GIVES_WAY, NONE_NEAR, Account, creep, follows, is_unstable
+from fem.analysis.limit_points import (
+    BENT,
+    GIVES_WAY,
+    LEAST_BENT,
+    MORE_BENT,
+    NONE_NEAR,
+    Account,
+    creep,
+    is_unstable,
+    unbalanced_between,
+)
 from fem.analysis.newton import NewtonSettings, solve_newton
 from fem.analysis.prediction import LOWEST_ORDER, GuidedStates, KnownStates, RecentStates
 from fem.arrays import FloatArray
@@ -160,7 +170,7 @@ class Stepper:
         self._known = KnownStates(self._value, self._state)
         recent = RecentStates(self._value, self._time, self._state) if problem.system.remembers else None
         self._recent = guided or recent
-        self._accounts, self._unstable, self._finest = [Account()], False, 0.0
+        self._accounts, self._unstable, self._finest, self._bent = [Account()], False, 0.0, BENT
 
     @property
     def accounts(self) -> FloatArray:
@@ -325,8 +335,11 @@ class Stepper:
         if unstable and not self._unstable and step > max(CROSSED * most, self._finest):
             return replace(result, reason=NONE_NEAR)
         missed, way = np.linalg.norm(state.y - guess.y), np.linalg.norm(state.y - self._state.y)
-        if (unstable or missed > MISSED * way) and not follows(problem, self._state, state, step / most):
-            return replace(result, reason=NONE_NEAR)
+        if unstable or missed > MISSED * way:
+            off, square = unbalanced_between(problem, self._state, state), (step / most) ** 2
+            if len(self._times) > 1 and not off <= max(LEAST_BENT, self._bent * square):
+                return replace(result, reason=NONE_NEAR)
+            self._bent = max(self._bent, MORE_BENT * off / square)
         return replace(result, unstable=unstable)
 
     def _beginnings(self, value: float, time: float) -> Iterator[tuple[State, System]]:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import fem
-from fem.analysis.limit_points import LEAST_GAIN, MOST_LOST, NONE_NEAR, Account, creep, follows, is_unstable
+from fem.analysis.limit_points import LEAST_GAIN, MOST_LOST, NONE_NEAR, Account, creep, is_unstable, unbalanced_between
 from fem.analysis.newton import NewtonSettings, solve_newton
 from fem.analysis.stepping import Stepper
 
@@ -134,17 +134,28 @@ def test_a_resumed_press_still_says_so(tmp_path):
     assert again.warnings == whole.warnings
 
 
-def test_a_state_follows_another_on_the_same_way_only():
+def test_between_two_states_of_one_way_energy_is_balanced_to_the_third_order():
     stepper = Stepper(block().equilibrium, "force", 1e-3, SETTINGS)
-    for force in (0.5, 1.0, 1.5):
+    for force in (1.0, 1.25, 1.375, 1.5):
         assert not stepper.advance(force).reason
-    problem, (_, first, second, third) = stepper.problem, stepper.known.states
-    assert follows(problem, first, second, 0.5)
-    assert follows(problem, second, second, 0.0)
-    assert follows(problem, third, second, 1.0 / 3.0)
-    assert not follows(problem, second, replace(third, y=1.3 * third.y), 1.0 / 3.0)
-    assert not follows(problem, second, replace(third, y=-30.0 * third.y), 1.0 / 3.0)
-    assert not is_unstable(problem, third, "force")
+    problem, (_, first, second, third, last) = stepper.problem, stepper.known.states
+    quarter, eighth = unbalanced_between(problem, first, second), unbalanced_between(problem, second, third)
+    assert 3.0 < quarter / eighth < 5.0
+    back = unbalanced_between(problem, last, third)
+    assert back == pytest.approx(unbalanced_between(problem, third, last), rel=0.02)
+    assert unbalanced_between(problem, second, second) == 0.0
+    assert unbalanced_between(problem, third, replace(last, y=1.3 * last.y)) > 0.05
+    assert np.isinf(unbalanced_between(problem, third, replace(last, y=-30.0 * last.y)))
+    assert not is_unstable(problem, last, "force")
+
+
+@pytest.mark.parametrize("contact", ["rigid_bonded", "uniform_pressure"])
+@pytest.mark.parametrize("steps", [1, 4, 20])
+def test_a_sheet_that_stretches_is_followed_from_a_first_step_that_goes_with_the_cube(contact, steps):
+    layer, hole = fem.Layer("latex", 0.3e-3, 1e3, fem.NeoHookean(2e6, 0.49)), fem.Support("hole", 50e-3)
+    found = fem.prepare(fem.Problem((layer,), fem.Tool(10e-3, contact), hole)).run(ramp("depth", 5e-3, steps))
+    assert found.complete
+    assert found.warnings == ()
 
 
 @pytest.mark.parametrize("solver", ["auto", "superlu"])
