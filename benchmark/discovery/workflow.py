@@ -54,7 +54,7 @@ from benchmark.discovery.detection.disagreement import (
 from benchmark.discovery.detection.places import places, shared_places
 from benchmark.discovery.discovery_result import Discovery, Place
 from benchmark.discovery.evidence.gains import conditions, tissue_gain
-from benchmark.discovery.evidence.parameter_evidence import constant, undetermined, unsteady
+from benchmark.discovery.evidence.parameter_evidence import at_bounds, constant, undetermined, unsteady
 from benchmark.discovery.evidence.pool import Listener, Pool, code_version, fingerprint, own_code, pool, silent
 from benchmark.discovery.evidence.selection import Selection, first_gain, ruled_out, select, usable
 from benchmark.discovery.evidence.shortlist import compared, not_shown, on_all, on_some, promising, remark, screen
@@ -308,7 +308,7 @@ def _discovery(
     nothing = word in ("cannot_tell", "no_discrepancy")
     problem, slugs = base.model.problem, tuple(effect.slug for effect in chosen.model.effects)
     closed = {slugs: closed_overall(base, answer.held)} if slugs else {}
-    large = large_remarks(problem, chosen.nuisance)
+    large = (*large_remarks(problem, chosen.nuisance), *(() if nothing else at_bounds(chosen)))
     few = remark(len(answer.selection.base.model.problem.trials), len(problem.trials))
     return Discovery(
         verdict=word,

@@ -15,7 +15,7 @@ from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.discovery_result import Array, ConditionEstimate, Estimate
 from benchmark.discovery.evidence.gains import conditions
 from benchmark.physics import Effect, EffectParameter
-from benchmark.physics.setup_entry import setup_key
+from benchmark.physics.setup_entry import effect_name, setup_key
 from benchmark.response.least_squares import scaled_inverse
 
 
@@ -28,6 +28,21 @@ def effect_estimates(fitted: Fit) -> tuple[tuple[str, Estimate], ...]:
         ends = _outer(p, fitted.vector[k] - half[k]), _outer(p, fitted.vector[k] + half[k])
         out.append((slug, Estimate(p.name, values[slug][p.name], p.unit, ends)))
     return tuple(out)
+
+
+def at_bounds(fitted: Fit) -> tuple[str, ...]:
+    """A sentence for each effect with parameters as large as they may be (or a time, say, as small)."""
+    values = fitted.model.values(fitted.vector)
+    found: dict[str, list[str]] = {}
+    for slug, p in fitted.model.parameters:
+        value = values[slug][p.name]
+        if value >= p.high * (1.0 - AT_BOUND) or (p.logarithmic and value <= p.low * (1.0 + AT_BOUND)):
+            found.setdefault(slug, []).append(f"{p.name} = {value:.4g} {p.unit}".rstrip())
+    return tuple(
+        f"{effect_name(slug)} stands at the end of what its parameters may be ({', '.join(said)}): the data may ask "
+        "for more of it, or for another form"
+        for slug, said in found.items()
+    )
 
 
 def _outer(parameter: EffectParameter, inner: float) -> float:
@@ -51,6 +66,8 @@ def sandwich(fitted: Fit) -> Array:
     return np.asarray(inner @ (slopes.T @ slopes * count / max(count - 1, 1)) @ inner)
 
 
+AT_BOUND = 1e-6
+"""Share of a bound within which a parameter stands at it."""
 SLOPE_STEP = 0.05
 """By which, in standard errors, a parameter is changed for the slope of what an effect adds."""
 

@@ -32,6 +32,8 @@ from benchmark.identification.parameters.presses.model_error import ModelError
 from benchmark.identification.parameters.presses.press_surrogate import Press
 from benchmark.identification.parameters.profile_likelihood import Profile, largest_errors, verified_profiles
 from benchmark.identification.pooling import counted_trials
+from benchmark.identification.trial_features import sample_noise
+from benchmark.response.force_curve import Array
 
 NOT_DETERMINED = "not determined"
 ONE_BY_ONE = (
@@ -41,6 +43,8 @@ ONE_BY_ONE = (
 PRIOR_ALONE = "on its prior alone"
 FAR = 2.0
 """Standard uncertainties beyond which a told value of the set-up has moved far: one in twenty does by chance."""
+LEFT, LEFT_NOISES = 0.02, 3.0
+"""Share of the force, and times what samples scatter by, from which on what a law leaves is told of."""
 CONTRADICTED = 5.0
 """Standard uncertainties beyond which the trials contradict what was told: one in two million does by chance."""
 
@@ -232,7 +236,7 @@ class Identified:
         said = [*self.remarks, *([] if self.found.spread is None else [self.found.spread.text])]
         said += [f"{self.conflict}. {ONE_BY_ONE}: {self._values(self.found)}"] if self.conflict else []
         said += [one.warning for one in self.undetermined]
-        said += self._moved_far
+        said += [*self._leaves, *self._moved_far]
         use = discrepancy_use(self.found)
         said += [] if use is None else [use.text]
         said += [f"another answer follows the trials as well: {self._values(one)}" for one in self.others]
@@ -240,6 +244,27 @@ class Identified:
         if self.found.problem.freedom < 1:
             said.append("no set-up was pressed twice: the scatter of trials is assumed (1.5 %), not measured")
         return tuple(said)
+
+    @cached_property
+    def _left(self) -> tuple[Array, Array]:
+        """(R,) what the fit leaves of each trial's force, and what its samples scatter by, over the force's range."""
+        predicted = zip(self.found.problem.trials, self.found.predicted, strict=True)
+        of = [(np.sqrt(np.mean((one.data.force - f) ** 2)), sample_noise(one.data.force), one) for one, f in predicted]
+        left, noise = np.array([(rms / np.ptp(one.data.force), own / np.ptp(one.data.force)) for rms, own, one in of]).T
+        return left, noise
+
+    @property
+    def _leaves(self) -> list[str]:
+        """A warning where the law leaves much of the force, and much more than noise."""
+        left, noise = (float(np.median(each)) for each in self._left)
+        if left <= max(LEFT, LEFT_NOISES * noise):
+            return []
+        return [
+            f"the law leaves {100.0 * left:.2g} % of the force (median over trials of the root mean square), where "
+            f"samples scatter by {100.0 * noise:.2g} %: the values are those of a law that does not follow these "
+            "trials, and their intervals, which trust it, may be far too narrow; let the command discover say what is "
+            "missing"
+        ]
 
     @property
     def _moved_far(self) -> list[str]:
@@ -320,8 +345,6 @@ class Identified:
     def to_dict(self) -> dict[str, Any]:
         """What `fit.json` gains."""
         found, use, problem = self.found, discrepancy_use(self.found), self.found.problem
-        predicted = zip(found.problem.trials, found.predicted, strict=True)
-        rms = [np.sqrt(np.mean((one.data.force - f) ** 2)) / np.ptp(one.data.force) for one, f in predicted]
         return {
             "parameters": {one.key: one.to_dict() for one in self.estimates},
             "law": found.problem.law,
@@ -331,7 +354,7 @@ class Identified:
             "determined_limits": {"factor": math.exp(KNOWN), "standard_error": LARGEST_ERROR},
             "correlations": list(correlation_words(found)),
             "told": [row.to_dict() for row in self.rows if row.name not in self.names],
-            "residual_percent_of_peak": 100.0 * float(np.median(rms)),
+            "residual_percent_of_peak": 100.0 * float(np.median(self._left[0])),
             "trial_scatter_percent": 100.0 * found.model.gain_deviation,
             "noise_memory": found.memory,
             "model_error": [

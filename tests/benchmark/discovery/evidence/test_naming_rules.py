@@ -13,6 +13,7 @@ from benchmark.discovery.evidence import further_effect, parameter_evidence, sel
 from benchmark.discovery.evidence.gains import Gain, Scored
 from benchmark.discovery.evidence.parameter_evidence import (
     adds_force,
+    at_bounds,
     by_condition,
     constant,
     determined,
@@ -819,3 +820,18 @@ def test_of_a_memory_and_a_flow_beside_it_each_must_be_told_by_itself(told, stay
 def test_effects_that_are_no_terms_of_each_other_stay(known_densities):
     both = fitted(effect("flow"), effect("memory", 2, richer=effect("memory", 4)), density=100.0)
     assert selection._as_further_terms(fitted(), both, SETTINGS, Work()) == (both, {})
+
+
+@pytest.mark.parametrize(
+    ("value", "logarithmic", "said"),
+    [(30.0, False, True), (29.9, False, False), (0.1, False, False), (0.1, True, True)],
+)
+def test_parameters_as_large_as_they_may_be_are_told_of(value, logarithmic, said):
+    """A stiffening stood at both of its ends, beside a confidence of 0.91 and without a word."""
+    parameter = EffectParameter("b_1", "", (1.0,), 0.1, 30.0, logarithmic, "steepness")
+    model = SimpleNamespace(
+        values=lambda _: {"strain_stiffening": {"b_1": value}}, parameters=(("strain_stiffening", parameter),)
+    )
+    found = at_bounds(SimpleNamespace(model=model, vector=np.zeros(1)))
+    said_of = f"strain stiffening stands at the end of what its parameters may be (b_1 = {value:.4g})"
+    assert [said_of in each for each in found] == [True] * said

@@ -53,7 +53,19 @@ def moved(told, deviations):
     thickness = Parameter("specimen.thickness", 0.01, 1e-4, 1.0, prior, told=True)
     vector = np.insert(told.found.vector, len(told.found.problem.parameters), np.log(0.01) + 0.035 * deviations)
     problem = replace(told.found.problem, parameters=(*told.found.problem.parameters, thickness))
-    return replace(told, found=replace(told.found, problem=problem, fit=replace(told.found.fit, vector=vector)))
+    made = replace(told, found=replace(told.found, problem=problem, fit=replace(told.found.fit, vector=vector)))
+    made.__dict__["_left"] = told._left  # whose model knows of no thickness
+    return made
+
+
+@pytest.mark.parametrize(("left", "noise", "said"), [(0.05, 0.002, True), (0.05, 0.03, False), (0.01, 0.001, False)])
+def test_what_a_law_leaves_is_told_of_where_it_is_much_more_than_noise(toy_fit, left, noise, said) -> None:
+    """7.3 % of the force was left beside an interval of 166 to 188 kPa, and nothing said so."""
+    told = answer(toy_fit())
+    assert not any("the law leaves" in one for one in told.warnings)
+    assert told.to_dict()["residual_percent_of_peak"] == pytest.approx(100.0 * np.median(told._left[0]))
+    told.__dict__["_left"] = np.full(6, left), np.full(6, noise)
+    assert any(f"the law leaves {100 * left:.2g} % of the force" in one for one in told.warnings) is said
 
 
 @pytest.mark.parametrize(("deviations", "said"), [(1.9, False), (-1.9, False), (-7.0, True), (2.1, True)])
