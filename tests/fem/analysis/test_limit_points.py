@@ -126,6 +126,13 @@ def test_what_bends_off_a_stable_way_is_said():
     assert depth == pytest.approx(np.interp(force, found.force, 1e3 * found.depth), rel=0.01)
 
 
+def test_a_hold_on_an_unstable_way_is_no_new_begin_of_it():
+    stepper = Stepper(block(FILM).equilibrium, "force", 1e-3, SETTINGS)
+    assert not any(stepper.advance(force).reason for force in (2.0, 4.0, 4.7, 4.7))
+    assert stepper.accounts[-1, -1] > stepper.accounts[-2, -1] > 0.0
+    assert stepper.advance(4.8).cuts == 0
+
+
 def test_a_resumed_press_still_says_so(tmp_path):
     load, kept = ramp("force", 5.0, 25), tmp_path / "kept.npz"
     whole = block(FILM).run(load, checkpoint=kept)
@@ -149,10 +156,10 @@ def test_between_two_states_of_one_way_energy_is_balanced_to_the_third_order():
     assert not is_unstable(problem, last, "force")
 
 
-@pytest.mark.parametrize("contact", ["rigid_bonded", "uniform_pressure"])
-@pytest.mark.parametrize("steps", [1, 4, 20])
-def test_a_sheet_that_stretches_is_followed_from_a_first_step_that_goes_with_the_cube(contact, steps):
-    layer, hole = fem.Layer("latex", 0.3e-3, 1e3, fem.NeoHookean(2e6, 0.49)), fem.Support("hole", 50e-3)
+@pytest.mark.parametrize(("contact", "thickness"), [("rigid_bonded", 0.2e-3), ("uniform_pressure", 0.3e-3)])
+@pytest.mark.parametrize("steps", [1, 10])
+def test_a_sheet_that_stretches_is_followed_from_a_first_step_that_goes_with_the_cube(contact, thickness, steps):
+    layer, hole = fem.Layer("latex", thickness, 1e3, fem.NeoHookean(2e6, 0.49)), fem.Support("hole", 50e-3)
     found = fem.prepare(fem.Problem((layer,), fem.Tool(10e-3, contact), hole)).run(ramp("depth", 5e-3, steps))
     assert found.complete
     assert found.warnings == ()

@@ -72,6 +72,13 @@ def test_single_factors_tell_of_a_positive_definite_matrix_only(sign, expected):
     assert solver.negative == expected
 
 
+def test_where_rows_were_exchanged_superlu_does_not_tell():
+    """Of (0 1; 1 0), whose eigenvalues are 1 and -1, its pivots are both positive."""
+    solver = make_solver("superlu", np.array([0, 2, 3]), np.array([0, 1, 1]))
+    solver.factorise(np.array([1e-9, 1.0, 1e-9]))
+    assert solver.negative is None
+
+
 def test_a_matrix_without_negative_eigenvalues_is_known_by_every_solver():
     for choice in ("auto", "superlu"):
         solver = make_solver(choice, np.array([0, 2, 3]), np.array([0, 1, 1]))
