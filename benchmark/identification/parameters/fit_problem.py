@@ -100,10 +100,11 @@ class FitProblem:
         return len(self.trials) - min(len(used), len(self.free))
 
 
-def relaxing_layers(problem: FitProblem) -> tuple[str, ...]:
-    """Layers that fade by parameters of their own."""
-    ends = (one.key.removesuffix(SHARE) for one in problem.parameters if one.key.endswith(SHARE))
-    return tuple(dict.fromkeys(ends))
+def relaxing_layers(problem: FitProblem, press: Press) -> tuple[str, ...]:
+    """Layers of a press that fade by parameters of their own, or by those of all."""
+    keys = {one.key for one in problem.parameters if press.has(one)}
+    every = f"{RELAXATION}.g" in keys
+    return tuple(name for name in press.setup[0].layer_names if every or f"{name}{SHARE}" in keys)
 
 
 def fading_of(problem: FitProblem) -> tuple[Fading, ...]:

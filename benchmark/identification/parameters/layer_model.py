@@ -17,6 +17,7 @@ from typing import Protocol
 import numpy as np
 
 from benchmark.identification.parameters.presses.marker_rings import MarkerRows
+from benchmark.identification.parameters.presses.press_surrogate import VOLUME
 from benchmark.identification.sheet_model import Relaxation, relaxed
 from benchmark.identification.trial_data import TrialData, group_bounds, reduced, rows_of
 from benchmark.identification.trial_features import ContactRange
@@ -322,9 +323,11 @@ class LayerModel:
     def _faded(self, trial: FitTrial, vector: Array, depth: Array, elastic: Array) -> Array:
         """A history of force (n,), or of a change of it, less what has faded of it."""
         for one in self._fading_of(trial):
-            weight = 1.0 - (1.0 - np.exp(vector[one.share])) ** self._sensitivity(trial, one, depth)
+            (share, time), held = np.exp(vector[[one.share, one.time]]), self._held(trial, one)
+            slower = 1.0 - held * share
+            weight = 1.0 - ((1.0 - share) / slower) ** self._sensitivity(trial, one, depth)
             part = weight * elastic
-            kept = relaxed(trial.data.time, part, Relaxation(1.0, float(np.exp(vector[one.time]))))
+            kept = relaxed(trial.data.time, part, Relaxation(1.0, float(time / slower)))
             elastic = elastic - (part - kept)
         return elastic
 
@@ -332,10 +335,28 @@ class LayerModel:
         return [one for one in self.fading if one.press == trial.press]
 
     def _sensitivity(self, trial: FitTrial, one: Fading, depth: Array) -> Array | float:
+        """(n,) how the force's logarithm goes with the stiffness of what fades, its volume's among it."""
         if not one.layer:
             return 1.0
         table = self.surrogates[trial.press]
-        return np.asarray(np.interp(depth, table.depth, table.layers[one.layer]))
+        both = (table.layers[name] for name in (one.layer, f"{one.layer}{VOLUME}") if name in table.layers)
+        return np.asarray(np.interp(depth, table.depth, sum(both)))
+
+    def _held(self, trial: FitTrial, one: Fading) -> float:
+        """The share of what fades that is a volume, which does not, in series with a shape that does.
+
+        Compliances that add, a of the whole without and 1 - a with relaxation g, tau, lose g (1 - a) / (1 - a g) of the
+        stiffness, with tau / (1 - a g).
+        """
+        layers, names = self.surrogates[trial.press].layers, self._fading_in(trial, one)
+        volume = sum(float(np.mean(layers[f"{name}{VOLUME}"])) for name in names if f"{name}{VOLUME}" in layers)
+        whole = volume + sum(float(np.mean(layers[name])) for name in names)
+        return min(max(volume / whole, 0.0), 0.99) if whole > 0.0 else 0.0
+
+    def _fading_in(self, trial: FitTrial, one: Fading) -> list[str]:
+        """The layers that fade by a share and a time: one, or all that the press knows of."""
+        known = self.surrogates[trial.press].layers
+        return [one.layer] if one.layer else [name for name in known if not name.endswith(VOLUME)]
 
     def _vector_columns(self, k: int, at: TrialsEvaluation, grids: Sequence[Array], shares: Sequence[Array]) -> Array:
         """(n, p) white derivatives of one trial's force by the coordinates."""

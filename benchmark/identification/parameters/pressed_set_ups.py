@@ -59,8 +59,7 @@ def press_all(problem: FitProblem, vector: Array) -> tuple[PressSurrogate, ...]:
 
 def _surrogate(problem: FitProblem, number: int, vector: Array, *, judge_mesh: bool = False) -> PressSurrogate:
     press, count = problem.presses[number], len(problem.parameters)
-    relaxing = [name for name in relaxing_layers(problem) if name in press.setup[0].layer_names]
-    values = vector[:count]
+    relaxing, values = relaxing_layers(problem, press), vector[:count]
     found = surrogate(press, problem.parameters, values, problem.law, relaxing, problem.forward, judge_mesh=judge_mesh)
     wrong = found.mesh_error if judge_mesh else press.mesh_error
     found = replace(found, force=found.force * (1.0 - taken(wrong, found.at_edge)))

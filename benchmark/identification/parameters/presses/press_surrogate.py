@@ -30,6 +30,10 @@ from benchmark.response.force_curve import Array
 from benchmark.response.setup_change import is_absolute
 
 Forward: TypeAlias = Literal["fem", "wave"]
+VOLUME = ".volume"
+"""What a layer's name ends in where its bulk modulus alone is meant."""
+LEAST_VOLUME = 1e-3
+"""0.5 less Poisson's ratio, below which a layer keeps its volume whatever it fades by."""
 STEPS = 12
 """Load steps of a press: force over depth is smooth, and a spline goes between them."""
 GRID = 600
@@ -57,7 +61,8 @@ class PressSurrogate:
     by : (p, k) array
         Derivatives of the force's logarithm by the coordinates of the whole fit.
     layers : mapping of layer to (k,) array
-        Derivatives of the force's logarithm by each relaxing layer's stiffness.
+        Derivatives of the force's logarithm by each relaxing layer's shear stiffness, and, as `LAYER.volume`, by its
+        bulk modulus, which does not relax.
     at : (p,) array
         Coordinates.
     mesh_error : float or None
@@ -151,7 +156,8 @@ def surrogate(
     values = acting_values(press, parameters, vector)
     setup = with_values(press.setup, values, law)
     chains = {k: _chain(parameters[k], values, setup) for k in acting}
-    wanted = {key for chain in chains.values() for key in chain} | {f"{name}.stiffness" for name in relaxing}
+    fading = {key: chain for name in relaxing for key, chain in _fading_chains(name, setup).items()}
+    wanted = {key for chain in (*chains.values(), *fading.values()) for key in chain}
     keys = sorted(wanted)
     ramp = differentiated_ramp(press.session, *setup, press.depth, keys, forward, STEPS, judge_mesh=judge_mesh)
     if ramp.failure is not None or ramp.depth[-1] < press.depth * (1.0 - 1e-9):
@@ -160,7 +166,7 @@ def surrogate(
     for k, chain in chains.items():
         by[k] = 1.0 if parameters[k].key == COMMON else _logarithmic(ramp, chain)
     grid = np.linspace(0.0, press.depth, GRID)
-    layers = {name: _logarithmic(ramp, {f"{name}.stiffness": 1.0}) for name in relaxing}
+    layers = {name: _logarithmic(ramp, chain) for name, chain in fading.items()}
     force = np.asarray(CubicSpline(ramp.depth, ramp.force)(grid))
     at_edge = 0.0 if ramp.at_edge is None else np.interp(grid, ramp.depth, ramp.at_edge)
     rings = _rings(press, ramp, chains, len(parameters))
@@ -221,6 +227,23 @@ def _chain(parameter: Parameter, values: Values, setup: Setup) -> dict[str, floa
         follows = setup[0].layer(layer).hyperelastic.shear_modulus is None
         return {key: way} | ({} if follows else {f"{layer}.stiffness": -way / (1.0 + poisson)})
     return {key: _size(key, values[key])}
+
+
+def _fading_chains(layer: str, setup: Setup) -> dict[str, dict[str, float]]:
+    """Chains of a layer's shear stiffness and, as `LAYER.volume`, of its bulk modulus, each alone.
+
+    At one shear modulus the bulk modulus 2 mu (1 + nu) / (3 (1 - 2 nu)) goes with Poisson's ratio; that of a layer
+    without constants of a law is one at a fixed Young's modulus.
+    """
+    one = setup[0].layer(layer)
+    poisson = float(one.poisson_ratio)
+    if 0.5 - poisson < LEAST_VOLUME:
+        return {layer: {f"{layer}.stiffness": 1.0}}
+    way = 1.0 / (1.0 / (1.0 + poisson) + 2.0 / (1.0 - 2.0 * poisson))
+    along = way / (1.0 + poisson) if one.hyperelastic.shear_modulus is None else 0.0
+    volume = {f"{layer}.poisson_ratio": way, f"{layer}.stiffness": along}
+    shape = {f"{layer}.poisson_ratio": -way, f"{layer}.stiffness": 1.0 - along}
+    return {layer: shape, f"{layer}{VOLUME}": volume}
 
 
 def _size(key: str, value: float) -> float:

@@ -65,6 +65,10 @@ def toy_ramp(session, tissue, tool, support, depth, keys, model="fem", steps=24,
     levels = np.linspace(0.0, depth, steps + 1)
     force, shares = toy_force(tissue, tool, levels), powers(tool.radius, levels)
     by = {f"{name}.stiffness": RampDerivative(share * force) for name, share in zip(LAYERS, shares, strict=True)}
+    by |= {  # at a fixed Young's modulus: the force goes with the shear moduli alone
+        f"{one.name}.poisson_ratio": RampDerivative(-share * force / (1.0 + one.poisson_ratio))
+        for one, share in zip(tissue.layers, shares, strict=True)
+    }
     return DifferentiatedRamp(
         levels, force, None, {key: by[key] for key in keys}, mesh_error=0.0 if judge_mesh else None
     )

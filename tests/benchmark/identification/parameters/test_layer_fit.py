@@ -1,3 +1,4 @@
+import json
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -5,6 +6,8 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+import fem
+from benchmark.cli.app import main
 from benchmark.errors import InputError
 from benchmark.files.sessions.fit_table import FitTable
 from benchmark.identification.parameters import layer_fit
@@ -152,3 +155,36 @@ def test_rows_of_a_trial_of_many_cycles_hold_as_many_samples_as_they_are_means_o
     assert fitted.count.size == fitted.data.rows
     assert 0.2 * time.size < fitted.count.sum() < 0.5 * time.size
     assert FitTrial.of(rows_of(trial, slice(0, 100)), 0, fitted.touch).count.tolist() == [1.0] * 100
+
+
+@pytest.mark.parametrize("keys", ["pad.relaxation", "relaxation"])
+def test_a_compressible_layer_is_fitted_the_series_that_its_shear_modulus_has(tmp_path, keys) -> None:
+    """In the finite elements shape relaxes alone: the force's own series had been told, 0.33 and 1.11 s here."""
+    folder = tmp_path / "s"
+    folder.mkdir()
+    prony = (fem.PronyTerm(0.4, 1.0),)
+    layer = fem.Layer("pad", 5e-3, 1e3, fem.NeoHookean(5e4, 0.45), prony)
+    model = fem.prepare(fem.Problem((layer,), fem.Tool(5e-3, "rigid_bonded"), fem.Support("bonded")))
+    draw, files = np.random.default_rng(0), []
+    for number, speed in enumerate((1e-3, 1e-3, 2e-4, 2e-4)):
+        time = np.concatenate([np.linspace(0.0, 3e-4 / speed, 25)[1:], 3e-4 / speed + np.linspace(0.0, 8.0, 80)[1:]])
+        depth = np.minimum(speed * time, 3e-4)
+        force = model.run(fem.Load("depth", time, depth)).force * (1.0 + 0.01 * draw.normal())
+        rows = np.column_stack([time, 1e3 * depth, force + draw.normal(0.0, 2e-4, time.size)])
+        files.append(f"t{number}.csv")
+        lines = [f"{t:.6f},{d:.7f},{f:.7f}" for t, d, f in [(0.0, 0.0, 0.0), *rows]]
+        (folder / files[-1]).write_text("\n".join(["time_s,depth_mm,force_N", *lines]))
+    (folder / "pad.toml").write_text(
+        'schema = 1\nname = "pad"\n[[layers]]\nname = "pad"\nthickness = "5 mm"\ndensity = "1000 kg/m^3"\n'
+        'youngs_modulus = "50 kPa"\npoisson_ratio = 0.45\n'
+    )
+    trials = "".join(f'[[trials]]\nfile = "{one}"\ncondition = "c{int(one[1]) // 2}"\n' for one in files)
+    (folder / "session.toml").write_text(
+        'schema = 1\nname = "s"\nspecimen = "pad.toml"\n[tool]\nradius = "5 mm"\ncontact = "rigid_bonded"\n'
+        f'[support]\nkind = "bonded"\n{trials}'
+    )
+    free = ("--free", f"pad.youngs_modulus,{keys}", "--exact", "all")
+    assert main(["fit", str(folder), *free, "--out", str(tmp_path / "o"), "--quiet"]) == 0
+    found = json.loads((tmp_path / "o" / "fit.json").read_text())["parameters"]
+    assert found[f"{keys}.g"]["value"] == pytest.approx(0.4, rel=0.03)
+    assert found[f"{keys}.tau"]["value"] == pytest.approx(1.0, rel=0.03)
