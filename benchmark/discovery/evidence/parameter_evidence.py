@@ -36,7 +36,7 @@ def at_bounds(fitted: Fit) -> tuple[str, ...]:
     found: dict[str, list[str]] = {}
     for slug, p in fitted.model.parameters:
         value = values[slug][p.name]
-        if value >= p.high * (1.0 - AT_BOUND) or (p.logarithmic and value <= p.low * (1.0 + AT_BOUND)):
+        if value >= criteria.AT_BOUND * p.high or (p.logarithmic and value <= p.low / criteria.AT_BOUND):
             found.setdefault(slug, []).append(f"{p.name} = {value:.4g} {p.unit}".rstrip())
     return tuple(
         f"{effect_name(slug)} stands at the end of what its parameters may be ({', '.join(said)}): the data may ask "
@@ -66,8 +66,6 @@ def sandwich(fitted: Fit) -> Array:
     return np.asarray(inner @ (slopes.T @ slopes * count / max(count - 1, 1)) @ inner)
 
 
-AT_BOUND = 1e-6
-"""Share of a bound within which a parameter stands at it."""
 SLOPE_STEP = 0.05
 """By which, in standard errors, a parameter is changed for the slope of what an effect adds."""
 

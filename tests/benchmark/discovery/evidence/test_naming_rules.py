@@ -824,7 +824,7 @@ def test_effects_that_are_no_terms_of_each_other_stay(known_densities):
 
 @pytest.mark.parametrize(
     ("value", "logarithmic", "said"),
-    [(30.0, False, True), (29.9, False, False), (0.1, False, False), (0.1, True, True)],
+    [(30.0, False, True), (29.0, False, False), (0.1, False, False), (0.1, True, True)],
 )
 def test_parameters_as_large_as_they_may_be_are_told_of(value, logarithmic, said):
     """A stiffening stood at both of its ends, beside a confidence of 0.91 and without a word."""
