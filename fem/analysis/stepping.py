@@ -199,6 +199,8 @@ class Stepper:
         rows = zip(values.tolist(), times.tolist(), states, settled, accounts, strict=True)
         for value, time, state, chosen, account in list(rows)[1:]:
             system = self._problem.system.advanced(time - self._time).as_settled(chosen)
+            if not (system.items or system.remembers or value == self._value):
+                self._bend(*self._strayed(system, state, value))
             self._accept(state, value, time, system, Account.of_row(account))
 
     @property
@@ -336,11 +338,21 @@ class Stepper:
             return replace(result, reason=NONE_NEAR)
         missed, way = np.linalg.norm(state.y - guess.y), np.linalg.norm(state.y - self._state.y)
         if unstable or missed > MISSED * way:
-            off, square = unbalanced_between(problem, self._state, state), (step / most) ** 2
+            off, square = self._strayed(system, state, value)
             if len(self._times) > 1 and not off <= max(LEAST_BENT, self._bent * square):
                 return replace(result, reason=NONE_NEAR)
-            self._bent = max(self._bent, MORE_BENT * off / square)
+            self._bend(off, square)
         return replace(result, unstable=unstable)
+
+    def _strayed(self, system: System, state: State, value: float) -> tuple[float, float]:
+        """Energy unbalanced on the straight way to a state at another load value, and the squared share of the load."""
+        share = abs(value - self._value) / max(abs(value), abs(self._value))
+        return unbalanced_between(replace(self._problem, system=system), self._state, state), share**2
+
+    def _bend(self, off: float, square: float) -> None:
+        """Let the way go on with as much more unbalanced as an accepted step of it had."""
+        if np.isfinite(off):
+            self._bent = max(self._bent, MORE_BENT * off / square)
 
     def _beginnings(self, value: float, time: float) -> Iterator[tuple[State, System]]:
         """Predictions with the equations to begin with: under more force those of as much more press.

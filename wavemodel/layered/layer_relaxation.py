@@ -71,7 +71,10 @@ def one_series(series: tuple[Prony, ...]) -> Prony:
 
 
 def of_shape(
-    layers: Sequence[WaveLayer], series: Sequence[Prony], compliance: Callable[[Sequence[WaveLayer]], float]
+    layers: Sequence[WaveLayer],
+    series: Sequence[Prony],
+    initial: float,
+    compliance: Callable[[Sequence[WaveLayer]], float],
 ) -> tuple[Prony, ...]:
     """Series by which all moduli relax so that the tool loses the force that it does where bulk moduli stay.
 
@@ -85,13 +88,14 @@ def of_shape(
         L, with their initial moduli.
     series
         L, of their shear moduli.
+    initial
+        Depth per force, m/N, of an elastic press on the layers.
     compliance
-        Depth per force, m/N, of an elastic press on layers like these.
+        The same of layers like them.
     """
     relaxing = [n for n, one in enumerate(series) if one.strength and _changes_volume(layers[n])]
     if not relaxing:
         return tuple(series)
-    initial = compliance(layers)
     if shared(tuple(series)) is not None:
         lost = 1.0 - series[0].long_term
         middle, last = (initial / compliance([_softer_in_shape(one, g) for one in layers]) for g in (0.5 * lost, lost))

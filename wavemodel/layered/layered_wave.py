@@ -129,7 +129,9 @@ class LayeredWave:
         made = partial(prepare, tool=touched, base=_base(support), chosen=discretisation, stress=stress)
         elastic = made(self.layers)
         if relaxing == "shape":
-            self.relaxation = of_shape(self.layers, self.relaxation, lambda changed: made(changed).compliance)
+            self.relaxation = of_shape(
+                self.layers, self.relaxation, elastic.compliance, lambda changed: made(changed).compliance
+            )
         self.body: StaticBody
         self.press: Press
         self.body, self.press = static_body(elastic, self.layers, tool.rigid, self.relaxation, self.damping)

@@ -37,12 +37,12 @@ _RATES = (0.01, 100_000.0)
 _SAME_RATE = 1e-3
 """Relative difference of two rates that are one, as 29.97 and 30000/1001."""
 _GREY = cv2.VideoWriter.fourcc(*"Y800")
+"""FFmpeg's pixels of one byte of grey: they need no way through colour and back."""
 _BY_MOTION = (
     *("FMP4", "MP4V", "XVID", "DIVX", "DX50", "H263", "H264", "X264", "AVC1", "HEVC", "H265", "HVC1", "HEV1"),
     *("VP80", "VP90", "AV01", "MPG1", "MPG2", "MPEG", "WMV1", "WMV2", "WMV3", "WVC1", "FLV1", "THEO"),
 )
 """FFmpeg's four letters of codecs that keep of a picture how it differs from the one before."""
-"""FFmpeg's pixels of one byte of grey: they need no way through colour and back."""
 _TRIALS = (".mcap", ".mcap.part")
 
 

@@ -165,6 +165,24 @@ def test_a_sheet_that_stretches_is_followed_from_a_first_step_that_goes_with_the
     assert found.warnings == ()
 
 
+@pytest.mark.parametrize("stops_at", [1, 2])
+def test_a_sheet_that_stretches_is_taken_up_as_it_was_left(tmp_path, stops_at):
+    layer, hole = fem.Layer("latex", 0.2e-3, 1e3, fem.NeoHookean(2e6, 0.49)), fem.Support("hole", 50e-3)
+    model = fem.prepare(fem.Problem((layer,), fem.Tool(10e-3, "rigid_bonded"), hole))
+    load, kept = ramp("depth", 5e-3, 4), tmp_path / "kept.npz"
+
+    def stop(report):
+        if report.step == stops_at:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        model.run(load, on_step=stop, checkpoint=kept)
+    again, whole = model.run(load, checkpoint=kept), model.run(load)
+    assert again.complete
+    assert again.resumed.steps == stops_at
+    assert again.force == pytest.approx(whole.force, rel=1e-9)
+
+
 @pytest.mark.parametrize("solver", ["auto", "superlu"])
 def test_every_solver_sees_that_nothing_holds_a_state(solver):
     """The state at rest of a block whose layers would rather grow: all stiffness with its sign turned."""
