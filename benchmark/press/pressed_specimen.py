@@ -41,6 +41,7 @@ BEYOND_PEAK = 1.3
 """How much deeper than the scenario's own peak a hand may press, where the model goes so deep."""
 SMALL_STRAIN_REACH = 0.4
 """Of the stack's height: how deep a wave of small strain may be pressed."""
+UNSTABLE = "from there on the press is not stable, the tissue would fold or wrinkle"
 SHEET_REACH = 0.5
 """Of the hole's radius, likewise; what the sheet was compared with finite elements to."""
 SMALLEST_TERM = 1e-6
@@ -241,25 +242,29 @@ def _fem_ramp(scenario: Scenario, wave: RadialTable) -> tuple[FemRamp | None, tu
     elastic = [layer.model_copy(update={"relaxation": ()}) for layer in scenario.tissue.layers]
     tissue = scenario.tissue.model_copy(update={"layers": tuple(elastic)})
     try:
-        return _ramp(scenario.model_copy(update={"tissue": tissue}), wave), ()
+        return _ramp(scenario.model_copy(update={"tissue": tissue}), wave)
     except (UncoveredError, InputError) as error:
         return None, (f"The finite elements have no answer to compare with: {error}",)
 
 
-def _ramp(scenario: Scenario, wave: RadialTable) -> FemRamp:
+def _ramp(scenario: Scenario, wave: RadialTable) -> tuple[FemRamp, tuple[str, ...]]:
     start = time.perf_counter()
     model = FemModel(scenario, beyond_limits=False).prepared
     ready, busy = time.perf_counter(), time.process_time()
     depth = wave.deepest * np.arange(1, LEVELS + 1) / LEVELS
     solution = model.run(fem.Load("depth", np.arange(1.0, LEVELS + 1), depth))
     seconds = ready - start, time.perf_counter() - ready, time.process_time() - busy
-    levels = solution.force.size
-    if levels < 3:
+    levels = stable = solution.force.size
+    remarks: tuple[str, ...] = ()
+    if solution.unstable_from is not None:
+        stable = int(np.searchsorted(depth[:levels], solution.unstable_from))
+        remarks = (f"The finite elements end at {1e3 * solution.unstable_from:.3g} mm: {UNSTABLE}.",)
+    if stable < 3:
         raise UncoveredError("they stop at the first steps of the press")
     radii = radii_of(wave.reach)
-    profile = np.nan_to_num(np.stack([solution.profile(step, radii) for step in range(levels)]))
-    table = table_of_levels(depth[:levels], profile, solution.force, wave.reach, wave.tool_radius)
-    return FemRamp(table, model.unknowns, levels, *seconds)
+    profile = np.nan_to_num(np.stack([solution.profile(step, radii) for step in range(stable)]))
+    table = table_of_levels(depth[:stable], profile, solution.force[:stable], wave.reach, wave.tool_radius)
+    return FemRamp(table, model.unknowns, levels, *seconds), remarks
 
 
 def _repaired(plain: PressedSpecimen, repair: RepairedModel) -> PressedSpecimen:

@@ -94,27 +94,33 @@ class _Run:
             if advance.reason:
                 failure = Failure(n + 1, time, self.load.control, advance.value, value, advance.reason)
                 further = _between(self.record, self.stepper.problem.system, advance, self.start)
-                return self.record.solution(failure, self._warned(), further)
+                return self._told(failure, further)
             self._accept(n + 1, time, advance)
-        return self.record.solution(None, self._warned())
+        return self._told(None, None)
 
-    def _warned(self) -> tuple[str, ...]:
-        """The warnings, what was lost over limit points, and from where on the press is not stable."""
+    def _told(self, failure: Failure | None, further: Record | None) -> Solution:
+        """The solution with the warnings, what was lost over limit points, and from where on it is not stable."""
         accounts = [Account.of_row(row) for row in self.stepper.accounts]
-        return (*self.warnings, *self._snapped(accounts), *self._unstable(accounts))
+        warnings = (*self.warnings, *self._snapped(accounts), *self._unstable(accounts))
+        depth = self._first(accounts, "unstable")[1] if accounts[-1].unstable else None
+        return replace(self.record.solution(failure, warnings, further), unstable_from=depth)
 
     def _unstable(self, accounts: Sequence[Account]) -> Iterator[str]:
         if accounts[-1].unstable:
             yield (
-                f"the press is not stable from {self._first(accounts, 'unstable')} on: the tissue would fold or "
+                f"the press is not stable from {self._at(accounts, 'unstable')} on: the tissue would fold or "
                 "wrinkle there, and what is computed beyond is one of several equilibria, which another mesh or other "
                 "steps may not share"
             )
 
-    def _first(self, accounts: Sequence[Account], what: str) -> str:
-        """Where a number of the accounts first rises."""
+    def _first(self, accounts: Sequence[Account], what: str) -> tuple[float, float]:
+        """Force in N and depth in m where a number of the accounts first rises."""
         state = self.stepper.known.states[next(n for n, one in enumerate(accounts) if getattr(one, what))]
-        return f"{state.force:.4g} N and {1e3 * self.record.equilibrium.depth(state.y):.4g} mm"
+        return state.force, self.record.equilibrium.depth(state.y)
+
+    def _at(self, accounts: Sequence[Account], what: str) -> str:
+        force, depth = self._first(accounts, what)
+        return f"{force:.4g} N and {1e3 * depth:.4g} mm"
 
     def _snapped(self, accounts: Sequence[Account]) -> Iterator[str]:
         crept, share = accounts[-1].crept, accounts[-1].share
@@ -123,7 +129,7 @@ class _Run:
         where = ""
         if crept:
             times = "once" if crept == 1 else f"{crept} times, first"
-            where = f" ({times} at {self._first(accounts, 'crept')})"
+            where = f" ({times} at {self._at(accounts, 'crept')})"
         lost = f"{100.0 * share:.2g} %" if share >= NOTICED else f"less than {100.0 * NOTICED:g} %"
         yield (
             f"the surface snapped past the tool's edge{where}: {lost} of the tool's work was lost, "

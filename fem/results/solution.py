@@ -136,6 +136,8 @@ class Solution:
         What was taken over from a checkpoint; None in a run from rest.
     last
         Of a run that stopped between two steps: the same steps with, as one more row, the last state of equilibrium.
+    unstable_from
+        Depth in m of the first state on the way that is known not to be stable, or None.
     """
 
     time: FloatArray
@@ -154,6 +156,7 @@ class Solution:
     recovery: FieldRecovery
     resumed: Resumed | None = None
     last: Solution | None = None
+    unstable_from: float | None = None
 
     def profile(self, step: int, radii: FloatArray) -> FloatArray:
         """Deflection of each layer's top face at reference radii (from the tool's axis along +x).

@@ -51,6 +51,21 @@ class ContactRelaxation:
         state[-1] = elastic
         return force + self._eta * (elastic - before) / dt
 
+    def let_go(self, contact: int, dt: float) -> float:
+        """Elastic force after a frame at whose end the held contact answers with none: where the surface stands, N."""
+        self._prepare(dt)
+        state = self._state[contact]
+        before, share = state[-1], 1.0 + self._eta / dt
+        left = self._eta * before / dt
+        for j, (keep, first, last) in enumerate(self._steps):
+            left += keep * state[j] + first * before
+            share -= last
+        return left / share
+
+    def fade(self, contact: int, share: float) -> None:
+        """Keep a share of what a contact remembers."""
+        self._state[contact] = [share * part for part in self._state[contact]]
+
     def free(self, contact: int, dt: float) -> float:
         """Elastic force after a frame without a force on the surface, N."""
         self._prepare(dt)

@@ -12,6 +12,7 @@ surface, so that z > 0 presses. Forces are what the device puts on the hand, (3,
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from math import isfinite
 from typing import Protocol
 
 import numpy as np
@@ -194,7 +195,7 @@ class HapticLoop:
     Forces act along the press; the tissue's surface carries no shear. A tool that leaves the grid, or rises above the
     untouched surface, lets go; one that goes deeper than the model answers feels the force at its end; one that moves
     to where another tool is stays where it was. No tool is pulled: where the tissue creeps back more slowly than the
-    hand, the force is nought.
+    hand, the force is nought. A sample with a number that is not finite is dropped: the tool stays where it was.
 
     Parameters
     ----------
@@ -213,6 +214,8 @@ class HapticLoop:
         (K,) last forces along the press, N, against the hands. The same memory at every step.
     bounds
         K bounds, or none.
+    dropped
+        Samples that were not finite.
 
     Raises
     ------
@@ -233,14 +236,15 @@ class HapticLoop:
         self.tissue, self.devices, self.dt = tissue, tuple(devices), dt
         self.force: FloatArray = np.zeros(len(devices))
         self.bounds = () if bound is None else tuple(bound() for _ in devices)
-        self._before, self._move = [0.0] * len(devices), [0.0] * len(devices)
+        self.dropped = 0
+        self._at: list[list[float]] = [[0.0] * 3 for _ in devices]
+        self._move = [0.0] * len(devices)
         self._vector: FloatArray = np.zeros(3)
 
     def step(self) -> FloatArray:
         """Read all devices, go on by one frame, write; the forces (K,), N."""
         for contact, device in enumerate(self.devices):
-            x, y, z = device.read().tolist()
-            self._move[contact], self._before[contact] = z - self._before[contact], z
+            x, y, z = self._read(contact, device)
             if self.bounds:
                 self.bounds[contact].paid(float(self.force[contact]), self._move[contact], self.dt)
             self._touch(contact, x, y, z)
@@ -257,6 +261,15 @@ class HapticLoop:
     def run(self, steps: int) -> FloatArray:
         """(steps, K) forces along the press of so many steps, N."""
         return np.array([self.step().copy() for _ in range(steps)])
+
+    def _read(self, contact: int, device: HapticDevice) -> list[float]:
+        """Where a device is, m: where it was before if it does not say."""
+        before, at = self._at[contact], device.read().tolist()
+        if not all(map(isfinite, at)):
+            self.dropped += 1
+            at = before
+        self._move[contact], self._at[contact] = at[2] - before[2], at
+        return list(at)
 
     def _touch(self, contact: int, x: float, y: float, z: float) -> None:
         """Put a tool where its device is, or let go."""

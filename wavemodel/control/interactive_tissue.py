@@ -85,6 +85,7 @@ class _Contact:
     depth: float = 0.0
     phase: str = "idle"
     elastic: float = 0.0
+    before: float = 0.0
     start: float = 0.0
     share: float = 0.0
     steps: int | None = None
@@ -96,6 +97,10 @@ class InteractiveTissue:
 
     NumPy itself may take buffers of 64 KB for a moment. Only vertices within the body's reach of a contact move,
     clipped at the tissue's edges; the others are untouched. Bad input raises before anything changes.
+
+    A tool pushes and never pulls: one that goes up faster than the tissue creeps loses it, feels nothing, and meets it
+    again where it then stands. The same goes for a tool that touches, within its radius, where it let go; touching
+    elsewhere begins anew, and what was left of the old dent is gone.
 
     Parameters
     ----------
@@ -153,6 +158,8 @@ class InteractiveTissue:
         """
         tool = self._tool(contact)
         self._check(contact, x, y, depth)
+        if tool.phase == "returning" and float(np.hypot(x - tool.x, y - tool.y)) > self.body.tool_radius:
+            self._forget(contact, tool)
         tool.x, tool.y, tool.depth, tool.phase = x, y, depth, "pressed"
 
     def release(self, contact: int, steps: int | None = None) -> None:
@@ -207,10 +214,11 @@ class InteractiveTissue:
         for index, tool in enumerate(self._contacts):
             if tool.phase == "returning":
                 self._return(index, tool, dt)
-        self._press()
+        self._press(dt)
         for index, tool in enumerate(self._contacts):
             pressed = tool.phase == "pressed"
-            self.force[index] = self.body.reaction(self._relaxation.held(index, tool.elastic, dt)) if pressed else 0.0
+            held = max(self._relaxation.held(index, tool.elastic, dt), 0.0) if pressed else 0.0
+            self.force[index] = self.body.reaction(held) if pressed else 0.0
 
     def presses(self, contact: int) -> bool:
         """Whether a tool is on the tissue.
@@ -251,19 +259,28 @@ class InteractiveTissue:
         else:
             tool.share += 1.0 / tool.steps if tool.steps is not None else dt / max(alone or 0.0, 1e-300)
             done = tool.share >= 1.0 - 1e-9
-            tool.elastic = 0.0 if done else self.body.returning(tool.start, tool.share)
+            before, tool.elastic = tool.elastic, 0.0 if done else self.body.returning(tool.start, tool.share)
+            self._relaxation.fade(index, tool.elastic / before if before else 0.0)
         if done:
-            tool.elastic, tool.phase = 0.0, "idle"
-            self._relaxation.forget(index)
+            self._forget(index, tool)
 
-    def _press(self) -> None:
+    def _forget(self, index: int, tool: _Contact) -> None:
+        """The surface is at rest."""
+        tool.elastic, tool.phase = 0.0, "idle"
+        self._relaxation.forget(index)
+
+    def _press(self, dt: float) -> None:
         """Elastic forces that bring each pressed tool to its depth under the forces of all; no tool pulls."""
         scale, busy = 0.0, sum(tool.phase != "idle" for tool in self._contacts)
+        for tool in self._contacts:
+            tool.before = tool.elastic
         for _ in range(SWEEPS if busy > 1 else 1):
             change = 0.0
-            for tool in self._contacts:
+            for index, tool in enumerate(self._contacts):
                 if tool.phase == "pressed":
                     found = self.body.elastic(max(tool.depth - self._sunk(tool), 0.0))
+                    if found < tool.before:
+                        found = max(found, self._relaxation.let_go(index, dt))
                     change, tool.elastic = max(change, abs(found - tool.elastic)), found
                     scale = max(scale, abs(found))
             if change <= CLOSE * scale:

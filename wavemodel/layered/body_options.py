@@ -24,7 +24,7 @@ from wavemodel.specimen import LEAST_FACE, DiscTool
 
 LARGE_PRESS = ("auto", "linear", "corrected", "deep")
 RESOLUTION, MOST_MODES = 16.0, 256
-"""Largest wavenumber times the tool's radius, and the most modes."""
+"""Largest wavenumber times the tool's radius or the stack's height, whichever is less, and the most modes."""
 SHARPER = 32.0
 """The first under a rigid tool on layers with laws of their own: where those stiffen, the edge's part that the modes do
 not have stays as soft as at rest. With 16 profiles are up to 3.5 % off, with 32 up to 1.3 %."""
@@ -166,7 +166,7 @@ def correction(press: Press, tool: DiscTool, *, deep: bool = False) -> FiniteStr
     if SPACING * height > DEEPEST_START * tool.radius:
         raise WaveError("large press: the tool is too small beside the stack for a path to its heights")
     border = BORDER * press.field.domain.width
-    limit = min(_resolution(press, tool) / tool.radius, 3.1 * MOST_MODES / border)
+    limit = min(max(_resolution(press, tool) / tool.radius, RESOLUTION / height), 3.1 * MOST_MODES / border)
     points = FEWER_POINTS if tool.slides else POINTS_PER_MODE
     body = StackBody(disc_modes(border, limit, points), thickness_of(press.stack))
     equilibrium = ModalEquilibrium(body, contact_of(press, tool, body))

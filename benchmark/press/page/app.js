@@ -363,8 +363,8 @@
     takeOver();
     state.said = "";
     const near = state.bench.hands.findIndex((hand) => hand.on && hand.stay && Math.hypot(hand.x - at[0], hand.y - at[1]) < Math.max(2e-3, state.bodies.wave.toolRadius));
-    const k = near >= 0 ? near : state.bench.free();
-    if (k < 0) return;
+    const k = near >= 0 ? near : state.bench.free(...at);
+    if (k < 0) { state.said = "all four tools press; let one go"; return; }
     state.active = k;
     state.pointers.set(event.pointerId, k);
     state.bench.put(k, at[0], at[1], goal(weight(event)));
@@ -486,9 +486,10 @@
   // ---- the finite elements, asked for the last press as it was made (a served page only)
   let line = null;
   function ask() {
-    const { begin, rows, alone } = state.bench.history(state.active, 60), say = (text) => { state.said = text; };
+    const { begin, rows, alone, rested } = state.bench.history(state.active, 60), say = (text) => { state.said = text; };
     if (rows.length < 2) return say("Press first: the finite elements follow the last press.");
     if (!alone) return say("The finite elements follow one tool alone.");
+    if (!rested) return say("The finite elements follow a press from rest, and this one met the dent of another.");
     const series = memory(state.specimen.memory), question = { press: data.specimens.indexOf(state.specimen), history: rows };
     if (!state.specimen.memory.strength.length) Object.assign(question, { strength: series.strength, time_s: series.time_s });
     const send = () => { say("The finite elements are at work…"); line.send(JSON.stringify(question)); };

@@ -8,19 +8,29 @@ const Hands = (() => {
     // `tissues` by name; `lead` is the name of the one whose answer is shown.
     constructor(tissues, lead) {
       this.tissues = tissues; this.lead = lead; this.time = 0;
-      this.hands = Array.from({ length: MOST }, () => ({ on: false, x: 0, y: 0, goal: 0, at: 0, stay: false }));
+      this.hands = Array.from({ length: MOST }, () => ({ on: false, who: 0, x: 0, y: 0, goal: 0, at: 0, stay: false }));
       this.record = []; this.refused = ""; this.task = null; this.hover = null;
     }
 
     get shown() { return this.tissues[this.lead]; }
     get busy() { return this.shown.tools.filter((tool) => tool.phase !== "idle").length; }
 
-    // A hand that is free, or -1.
-    free() { return this.hands.findIndex((hand, k) => !hand.on && this.shown.tools[k].phase !== "returning"); }
+    // A tool for a press at a place, or -1 where all press: the one whose dent is there, one at rest, or else the one
+    // with the least dent left, which is then gone.
+    free(x, y) {
+      const left = (k) => {
+        const tool = this.shown.tools[k];
+        if (tool.phase !== "returning") return 0;
+        return Math.hypot(x - tool.x, y - tool.y) <= this.shown.body.toolRadius ? -1 : tool.elastic;
+      };
+      const off = this.hands.map((hand, k) => k).filter((k) => !this.hands[k].on);
+      return off.reduce((best, k) => (best < 0 || left(k) < left(best) ? k : best), -1);
+    }
 
+    // A hand is known by the lowest number that no other has, whichever tool it takes.
     put(k, x, y, goal) {
-      const hand = this.hands[k];
-      if (!hand.on) Object.assign(hand, { on: true, at: 0 });
+      const hand = this.hands[k], taken = this.hands.filter((one) => one.on).map((one) => one.who);
+      if (!hand.on) Object.assign(hand, { on: true, at: 0, who: [0, 1, 2, 3].find((number) => !taken.includes(number)) });
       Object.assign(hand, { x, y, goal });
     }
 
@@ -64,8 +74,8 @@ const Hands = (() => {
     _keep(frame) {
       const { force, tools } = this.shown;
       frame.time = this.time;
-      frame.rows = tools.map((tool, k) => (tool.phase === "pressed" ? [k, tool.x, tool.y, tool.depth, force[k]] : null)).filter(Boolean);
-      frame.air = this.hover && !frame.rows.length ? [0, ...this.hover, 0, 0] : null;
+      frame.rows = tools.map((tool, k) => (tool.phase === "pressed" ? [k, tool.x, tool.y, tool.depth, force[k], this.hands[k].who, tool.rested] : null)).filter(Boolean);
+      frame.air = this.hover && !frame.rows.length ? [0, ...this.hover, 0, 0, 0] : null;
       if (this.task) {
         frame.targets = this.task.current;
         this.task.look(tools, this.time);
@@ -74,7 +84,7 @@ const Hands = (() => {
       while (this.record.length && this.record[0].time < this.time - KEPT) this.record.shift();
     }
 
-    // The last press of a tool, from rest: at most so many rows of [seconds, depth in m].
+    // The last press of a tool, and whether it was from rest: at most so many rows of [seconds, depth in m].
     history(k, most) {
       let end = this.record.length;
       const row = (frame) => frame.rows.find(([tool]) => tool === k);
@@ -83,17 +93,18 @@ const Hands = (() => {
       while (start > 0 && row(this.record[start - 1])) start--;
       const begin = this.record[start] && this.record[start].time - this.record[start].dt, every = Math.max(1, Math.ceil((end - start) / (most - 1)));
       const kept = this.record.slice(start, end).filter((_, at, all) => at % every === every - 1 || at === all.length - 1);
-      return { begin, rows: kept.map((frame) => [frame.time - begin, row(frame)[3]]), alone: kept.every((frame) => frame.rows.length === 1) };
+      const rested = kept.every((frame) => row(frame)[6]);
+      return { begin, rested, rows: kept.map((frame) => [frame.time - begin, row(frame)[3]]), alone: kept.every((frame) => frame.rows.length === 1) };
     }
 
     // The record as the lines of a CSV file; of a task with the target that was shown.
     csv() {
       const lines = ["time_s,tool,x_mm,y_mm,depth_mm,force_N,target,target_x_mm,target_y_mm,target_depth_mm"];
       for (const { time, rows, air, targets } of this.record) {
-        for (const [k, x, y, depth, force] of air ? [air] : rows) {
-          const target = targets?.[Math.min(k, targets.length - 1)];
+        for (const [, x, y, depth, force, who] of air ? [air] : rows) {
+          const target = targets?.[Math.min(who, targets.length - 1)];
           const aim = target ? [target.number, ...[target.x, target.y, target.depth].map((part) => (1e3 * part).toFixed(3))] : ["", "", "", ""];
-          lines.push([time.toFixed(5), k, (1e3 * x).toFixed(4), (1e3 * y).toFixed(4), (1e3 * depth).toFixed(5), force.toFixed(6), ...aim].join(","));
+          lines.push([time.toFixed(5), who, (1e3 * x).toFixed(4), (1e3 * y).toFixed(4), (1e3 * depth).toFixed(5), force.toFixed(6), ...aim].join(","));
         }
       }
       return lines.join("\n") + "\n";

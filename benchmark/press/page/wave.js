@@ -199,6 +199,8 @@ const Wave = (() => {
       return state[n - 1];
     }
 
+    fade(contact, share) { this.state[contact].forEach((part, k, all) => { all[k] = share * part; }); }
+
     forget(contact) { this.state[contact].fill(0); }
 
     _prepare(dt) {
@@ -256,7 +258,10 @@ const Wave = (() => {
       const near = this.tools.some((other, index) => index !== contact && other.phase === "pressed"
         && Math.hypot(x - other.x, y - other.y) < 2 * this.body.toolRadius);
       if (near) return "closer than two tool radii to the other tool";
-      Object.assign(this.tools[contact], { x, y, depth, phase: "pressed" });
+      const tool = this.tools[contact];
+      if (tool.phase === "returning" && Math.hypot(x - tool.x, y - tool.y) > this.body.toolRadius) this._forget(contact, tool);
+      if (tool.phase !== "pressed") tool.rested = tool.phase === "idle";
+      Object.assign(tool, { x, y, depth, phase: "pressed" });
       return null;
     }
 
@@ -279,9 +284,9 @@ const Wave = (() => {
     // Forces and states one frame on, without the faces.
     advance(dt) {
       this.tools.forEach((tool, index) => { if (tool.phase === "returning") this._return(index, tool, dt); });
-      this._press();
+      this._press(dt);
       this.tools.forEach((tool, index) => {
-        this.force[index] = tool.phase === "pressed" ? this.body.reaction(this.relaxation.held(index, tool.elastic, dt)) : 0;
+        this.force[index] = tool.phase === "pressed" ? this.body.reaction(Math.max(this.relaxation.held(index, tool.elastic, dt), 0)) : 0;
       });
     }
 
@@ -300,21 +305,28 @@ const Wave = (() => {
       } else {
         tool.share += tool.steps === null ? dt / Math.max(alone ?? 0, 1e-300) : 1 / tool.steps;
         done = tool.share >= 1 - 1e-9;
+        const before = tool.elastic;
         tool.elastic = done ? 0 : this.body.returning(tool.start, tool.share);
+        this.relaxation.fade(index, before ? tool.elastic / before : 0);
       }
-      if (done) {
-        tool.elastic = 0; tool.phase = "idle";
-        this.relaxation.forget(index);
-      }
+      if (done) this._forget(index, tool);
     }
 
-    _press() {
+    _forget(index, tool) {
+      tool.elastic = 0; tool.phase = "idle";
+      this.relaxation.forget(index);
+    }
+
+    // Elastic forces that bring each pressed tool to its depth under the forces of all; no tool pulls.
+    _press(dt) {
       const busy = this.tools.filter((tool) => tool.phase !== "idle").length;
+      const before = this.tools.map((tool) => tool.elastic);
       for (let sweep = 0, scale = 0; sweep < (busy > 1 ? SWEEPS : 1); sweep++) {
         let change = 0;
-        for (const tool of this.tools) {
+        for (const [index, tool] of this.tools.entries()) {
           if (tool.phase !== "pressed") continue;
-          const found = this.body.elastic(Math.max(tool.depth - this._sunk(tool), 0));
+          let found = this.body.elastic(Math.max(tool.depth - this._sunk(tool), 0));
+          if (found < before[index]) found = Math.max(found, this.relaxation.elasticFor(index, 0, dt));
           change = Math.max(change, Math.abs(found - tool.elastic));
           tool.elastic = found;
           scale = Math.max(scale, Math.abs(found));

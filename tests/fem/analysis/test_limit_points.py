@@ -117,12 +117,16 @@ def test_a_pressure_ends_where_its_force_is_largest_whatever_the_steps(layers):
     assert found[0].depth[at[0]] == pytest.approx(found[2].depth[at[1]], rel=1e-9)
 
 
-def test_a_press_by_depth_goes_on_with_stable_states():
-    found = block().run(ramp("depth", 3.6e-3, 40))
+@pytest.mark.parametrize("steps", [12, 24, 40, 96])
+def test_a_press_by_depth_goes_on_where_its_surface_folds_and_says_so(steps):
+    """Behind the fold its force, lower by 5 to 15 %, is another with other steps: once told of in some rows only."""
+    found = block().run(ramp("depth", 3.6e-3, steps))
     assert found.complete
-    assert not any("not stable" in said for said in found.warnings)
-    assert (np.diff(found.depth) > 0.0).all()
-    assert found.force.max() == pytest.approx(1.85, rel=0.01)
+    assert sum("not stable" in said for said in found.warnings) == 1
+    assert found.unstable_from == pytest.approx(2.53e-3, rel=0.02)
+    stable = found.depth < found.unstable_from
+    assert (np.diff(found.force[stable]) > 0.0).all()
+    assert np.interp(2.4e-3, found.depth[stable], found.force[stable]) == pytest.approx(1.803, rel=2e-3)
 
 
 def test_what_bends_off_a_stable_way_is_said():

@@ -137,6 +137,25 @@ def test_unusable_streams_are_refused(time, position):
         RecordedDevice(np.array(time), position)
 
 
+class StutteringDevice(RecordedDevice):
+    """Every seventh sample is no number."""
+
+    def read(self):
+        at = super().read()
+        return np.full(3, (np.nan, np.inf)[self._next % 2]) if self._next % 7 == 0 else at
+
+
+def test_samples_that_are_no_numbers_are_dropped_and_give_nothing_away(body, grid):
+    depth, _ends = cycles(50, np.random.default_rng(3), 1.6e-3)
+    device = StutteringDevice(DT * np.arange(depth.size), stream(depth), DT)
+    loop = HapticLoop(InteractiveTissue(body, grid, series=Prony((0.3,), (0.1,))), [device], DT, EnergyBound)
+    forces = loop.run(depth.size)[:, 0]
+    felt = np.where(np.arange(1, depth.size + 1) % 7 == 0, np.append(0.0, depth[:-1]), depth)
+    assert loop.dropped == depth.size // 7
+    assert np.isfinite(forces).all()
+    assert np.cumsum(-forces[:-1] * np.diff(felt)).max() <= loop.bounds[0].loan
+
+
 def test_a_loop_needs_a_tool_and_a_time(body, grid):
     tissue, device = InteractiveTissue(body, grid), RecordedDevice(np.array([0.0, 1.0]), np.zeros((2, 3)))
     with pytest.raises(WaveError, match="contact"):

@@ -123,6 +123,62 @@ def test_a_held_press_relaxes_and_creeps_back_by_its_closed_form(tissue, wave):
     np.testing.assert_allclose(depths, expected, rtol=1e-6)
 
 
+def unilateral(depths, stiffness, g, tau):
+    """Force (n,) of one term under a tool that only pushes, by small steps: y' = (g e - y) / tau, e - y >= 0."""
+    lag, fine, out = 0.0, 50, []
+    for before, after in zip(np.append(0.0, depths[:-1]), depths, strict=True):
+        for k in range(fine):
+            elastic = max(stiffness * (before + (k + 1) / fine * (after - before)), lag)
+            lag += DT / fine * (g * elastic - lag) / tau
+        out.append(elastic - lag)
+    return np.array(out)
+
+
+def test_a_tool_withdrawn_faster_than_the_tissue_creeps_loses_it_and_meets_it_where_it_stands(tissue, wave):
+    g, tau = 0.5, 0.3
+    turns = [0.0, 0.05, 1.05, 1.06, 1.36, 1.37, 1.6]
+    time = DT * np.arange(1, 1601)
+    depths = np.interp(time, turns, DEPTH * np.array([0, 1, 1, 0.05, 0.05, 1, 1]))
+    tool, forces = tissue(series=Prony((g,), (tau,))), []
+    for depth in depths:
+        tool.touch(0, 40e-3, 30e-3, float(depth))
+        tool.advance(DT)
+        forces.append(tool.force[0])
+    expected = unilateral(depths, 1.0 / wave.law.compliance, g, tau)
+    assert max(forces[1070:1300]) < 1e-12
+    np.testing.assert_allclose(forces, expected, atol=2e-3 * expected.max())
+
+
+def pressed_long(tool, steps=2000):
+    tool.touch(0, 40e-3, 30e-3, DEPTH)
+    for _ in range(steps):
+        tool.advance(DT)
+    return tool
+
+
+def test_a_dent_is_met_where_it_is_and_elsewhere_the_tissue_is_new(tissue, wave):
+    for away, stands in ((2e-3, True), (4e-3, False)):
+        tool = pressed_long(tissue(series=Prony((0.4,), (0.2,))))
+        tool.release(0)
+        dent = tool.frame(DT)[0].max()
+        tool.touch(0, 40e-3 + away, 30e-3, 0.05 * DEPTH)
+        after = tool.frame(DT)[0].max()
+        assert 0.39 * DEPTH < dent < 0.41 * DEPTH
+        assert after == pytest.approx(dent if stands else 0.05 * DEPTH, rel=5e-3)
+        assert (tool.force[0] == pytest.approx(0.0, abs=1e-15)) == stands
+
+
+def test_memory_goes_with_a_return_in_stated_steps(tissue, wave):
+    """Half way back half of what was forgotten is left: pressed again, half of the loss is felt."""
+    g, tool = 0.4, pressed_long(tissue(series=Prony((0.4,), (0.05,))))
+    tool.release(0, steps=10)
+    for _ in range(5):
+        tool.advance(1e-6)
+    tool.touch(0, 40e-3, 30e-3, DEPTH)
+    tool.advance(1e-6)
+    assert tool.force[0] == pytest.approx((1.0 - 0.5 * g) * DEPTH / wave.law.compliance, rel=1e-4)
+
+
 def test_damping_is_felt_while_pressing_on(tissue, wave):
     tool, speed = tissue(retardation=10e-3), 1e-3
     for step in range(1, 21):

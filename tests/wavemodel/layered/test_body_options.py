@@ -97,3 +97,16 @@ def test_covers_a_bonded_base_and_two_contacts(skin):
         LayeredWave(skin(), DiscTool(5e-3), large_press="corrected", integrator="exact")
     with pytest.raises(WaveError, match="'finite'"):
         LayeredWave(skin(), DiscTool(5e-3), large_press="finite")
+
+
+@pytest.mark.parametrize("wide", [8.0, 16.0])
+def test_a_wide_pressure_on_a_thin_slab_squeezes_it_as_between_plates(wide):
+    """Its middle is in confined compression, whose stress is closed: d/dl of the energy at F = diag(1, 1, l)."""
+    layer, height = WaveLayer("slab", 1e-3, 1000.0, 100e3, 0.3), 1e-3
+    shear, bulk = layer.shear_modulus, layer.lame_modulus + 2.0 / 3.0 * layer.shear_modulus
+    wave = LayeredWave([layer], DiscTool(wide * height), discretisation=WaveDiscretisation(domain="disc"))
+    stretch = 0.75
+    stress = 2.0 / 3.0 * shear * (stretch ** (-5.0 / 3.0) - stretch ** (1.0 / 3.0)) + bulk * (1.0 - stretch)
+    pressed = wave.run("force", np.ones(1), np.array([stress * np.pi * (wide * height) ** 2]))
+    profile = pressed.profile(-1, np.linspace(0.0, 0.6, 7) * wide * height)[0]
+    np.testing.assert_allclose(profile, (1.0 - stretch) * height, rtol=5e-3)
