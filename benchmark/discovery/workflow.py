@@ -36,7 +36,7 @@ from benchmark.discovery.answer.verdict import Facts, statement, verdict
 from benchmark.discovery.base.calibration import Calibrated, calibrate
 from benchmark.discovery.base.effect_model import Fit
 from benchmark.discovery.base.setup_priors import setup_entries, told_priors
-from benchmark.discovery.base.trial_bounds import large_remarks, late_by_speed, trial_values
+from benchmark.discovery.base.trial_bounds import gains_between, large_remarks, late_by_speed, trial_values
 from benchmark.discovery.base.trials_problem import OWN
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.detection.cells import channel_sizes, misses_nothing, reachable, within_tolerance
@@ -340,6 +340,7 @@ def _discovery(
 def _facts(answer: _Answer, known: Sequence[Effect], settings: Settings) -> Facts:
     """What the verdict rests on."""
     selection, by_slug = answer.selection, {effect.slug: effect for effect in known}
+    problem = answer.chosen.model.problem
     alike = {slug for slugs in selection.lookalikes.values() for slug in slugs}
     return Facts(
         p=answer.before.p,
@@ -362,7 +363,8 @@ def _facts(answer: _Answer, known: Sequence[Effect], settings: Settings) -> Fact
         p_strained=strained(answer.chosen, criteria.TIE * tissue_gain(selection.chosen, selection.own)),
         shared=shared_misfit(answer.chosen),
         p_shared=shared_by_chance(answer.chosen, settings),
-        by_speed=late_by_speed(answer.chosen.model.problem, answer.chosen.nuisance[:, OWN.index("shift")]) is not None,
+        by_speed=late_by_speed(problem, answer.chosen.nuisance[:, OWN.index("shift")]) is not None,
+        parted=gains_between(problem, answer.chosen.nuisance[:, OWN.index("gain")]) is not None,
     )
 
 

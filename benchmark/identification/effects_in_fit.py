@@ -18,7 +18,7 @@ from benchmark.identification import FittingError, SessionFit, TrialData, fit_se
 from benchmark.identification.fitted_parameters import fitted_parameters
 from benchmark.model_file import RepairedModel
 from benchmark.models import Array, UncoveredError
-from benchmark.models.scenario_effects import open_radius, specimen_layers
+from benchmark.models.scenario_effects import measured_height, open_radius, specimen_layers
 from benchmark.physics import TrialContext
 from benchmark.response.model_with_effects import effects_of, held_by_finite_strain
 from benchmark.response.pipeline import Added, trial_force
@@ -148,7 +148,7 @@ def trial_context(session: Session, trial: TrialData, depth: Array) -> TrialCont
     tissue, tool, support = session.setup(measured)
     return TrialContext(
         tool_radius=tool.radius,
-        thickness=tissue.thickness if np.isfinite(tissue.thickness) else 0.05,
+        thickness=measured_height(tissue.thickness, support, tool.radius),
         peak_depth=float(depth.max()),
         peak_force=float(np.ptp(trial.force)),
         duration=float(np.ptp(trial.time)),

@@ -19,6 +19,8 @@ from wavemodel.physics import Physics
 FRICTION = "friction_coefficient"
 """Belongs to a rigid_frictional tool, which each model refuses by itself, and has no effect on any other."""
 
+HALF_SPACE_RADII = 4.0
+"""Height of a half-space to effects that measure a depth by it, in radii of the tool, which is its only length."""
 REASONS = {
     "interface_shear_limit": "the layered wave on a base and the finite elements have it",
     "clamp_shear_limit": "only the finite elements have it, for a hole in axial symmetry",
@@ -97,7 +99,7 @@ def scenario_context(scenario: Scenario) -> TrialContext:
     peak = float(np.abs(history.value).max())
     return TrialContext(
         tool_radius=scenario.tool.radius,
-        thickness=thickness,
+        thickness=measured_height(thickness, scenario.support, scenario.tool.radius),
         peak_depth=0.1 * thickness if control == "force" else peak,
         peak_force=peak,
         duration=float(history.time[-1]),
@@ -112,6 +114,12 @@ def scenario_context(scenario: Scenario) -> TrialContext:
 def specimen_layers(layers: Iterable[Layer]) -> tuple[WaveLayer, ...]:
     """The layers of a specimen as effects know them, without an endless base."""
     return tuple(wave_layers((layer for layer in layers if math.isfinite(layer.thickness)), laws=False))
+
+
+def measured_height(thickness: float, support: Support, tool_radius: float) -> float:
+    """Height in m by which effects measure a depth: the specimen's; a half-space has none but that of the tool."""
+    endless = support.kind == "half_space" or not math.isfinite(thickness)
+    return HALF_SPACE_RADII * tool_radius if endless else thickness
 
 
 def open_radius(support: Support) -> float:

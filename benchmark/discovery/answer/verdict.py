@@ -61,6 +61,8 @@ class Facts:
         Of sharing so much by chance.
     by_speed : bool
         Whether the trials' time shifts go with their speeds, as no clock's do: something may hide in them.
+    parted : bool
+        Whether the trials' gains part conditions, as no scatter of trials does.
     """
 
     p: float
@@ -86,6 +88,7 @@ class Facts:
     shared: float = 0.0
     p_shared: float = 1.0
     by_speed: bool = False
+    parted: bool = False
 
     @property
     def by_rows(self) -> bool:
@@ -131,7 +134,7 @@ def verdict(facts: Facts) -> str:
     if not facts.enough:
         return "cannot_tell"
     if not (facts.p < facts.level if facts.effects else facts.shares and not facts.tiny):
-        return "no_discrepancy" if facts.within and not facts.by_speed else "cannot_tell"
+        return "no_discrepancy" if facts.within and not (facts.by_speed or facts.parted) else "cannot_tell"
     if not facts.effects or _fails(facts):
         return "outside_catalogue"
     if facts.lookalikes:
@@ -204,6 +207,12 @@ def _untold(facts: Facts) -> str:
         return (
             "These trials cannot tell: too few trials, or none repeated, to show a disagreement at the "
             f"{100.0 * facts.level:g} % level; nothing is named, and agreement is not shown either."
+        )
+    if facts.within and facts.parted:
+        return (
+            "These trials cannot tell: a stiffness is fitted to each, and these part the conditions, as no scatter of "
+            "trials does: a machine that gives way, another tool or another specimen may hide in them; nothing is "
+            "named, and agreement is not shown either."
         )
     if facts.within:
         return (

@@ -7,7 +7,7 @@ is late by a sample or two. Gain and marker zeros have priors alone.
 from __future__ import annotations
 
 import numpy as np
-from scipy.stats import kendalltau
+from scipy.stats import kendalltau, norm, t
 
 from benchmark.discovery import criteria
 from benchmark.discovery.base.trials_problem import OWN, TrialRef, TrialsProblem
@@ -215,18 +215,31 @@ def _gains_in_order(problem: TrialsProblem, gain: Array) -> tuple[str, ...]:
 
 
 def _gains_between(problem: TrialsProblem, gain: Array) -> tuple[str, ...]:
-    """A warning of log gains (R,) that part conditions: a ratio of stiffness, which is no scatter of trials."""
-    groups, kinds = _repeated(problem)
-    if len(kinds) < 2:
+    """A warning of log gains (R,) that part conditions."""
+    parted = gains_between(problem, gain)
+    if parted is None:
         return ()
-    mean = {k: float(gain[groups == k].mean()) for k in kinds}
-    least, most = min(kinds, key=mean.__getitem__), max(kinds, key=mean.__getitem__)
-    apart = mean[most] - mean[least]
-    if apart <= max(criteria.TOGETHER * _error(gain, groups, (least, most)), np.log1p(criteria.PARTED)):
-        return ()
-    stiff, soft = (problem.study.conditions[k].name for k in (most, least))
+    stiff, soft, apart = parted
     return (
         f"the trials' own gains are {100.0 * np.expm1(apart):.2g} % larger in {stiff} than in {soft}: what makes one "
         "condition stiffer beside the other, as a rig that gives way or another size of a tool does, is in them, and "
         "is not looked for",
     )
+
+
+def gains_between(problem: TrialsProblem, gain: Array) -> tuple[str, str, float] | None:
+    """The stiffest and the softest condition by log gains (R,), and how far apart, where that is no scatter of trials.
+
+    Student's quantile at the level of `TOGETHER` normal standard errors, and a share by which told tools may be off.
+    """
+    groups, kinds = _repeated(problem)
+    if len(kinds) < 2:
+        return None
+    mean = {k: float(gain[groups == k].mean()) for k in kinds}
+    least, most = min(kinds, key=mean.__getitem__), max(kinds, key=mean.__getitem__)
+    apart, freedom = mean[most] - mean[least], gain.size - np.unique(groups).size
+    sure = float(t.isf(norm.sf(criteria.TOGETHER), freedom)) * _error(gain, groups, (least, most))
+    if apart <= max(sure, np.log1p(criteria.PARTED)):
+        return None
+    names = [problem.study.conditions[k].name for k in (most, least)]
+    return names[0], names[1], apart

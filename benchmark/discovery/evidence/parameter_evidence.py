@@ -25,9 +25,49 @@ def effect_estimates(fitted: Fit) -> tuple[tuple[str, Estimate], ...]:
     values = fitted.model.values(fitted.vector)
     out = []
     for k, (slug, p) in enumerate(fitted.model.parameters, start=first):
-        ends = _outer(p, fitted.vector[k] - half[k]), _outer(p, fitted.vector[k] + half[k])
+        inner = (fitted.vector[k] - half[k], fitted.vector[k] + half[k]) if slopes(fitted, k) else walked(fitted, k)
+        ends = _outer(p, inner[0]), _outer(p, inner[1])
         out.append((slug, Estimate(p.name, values[slug][p.name], p.unit, ends)))
     return tuple(out)
+
+
+def slopes(fitted: Fit, place: int) -> bool:
+    """Whether the data tell of a number of the vector by a slope: a pull that lets go between two samples has none."""
+    return bool(1.0 - fitted.covariance[place, place] * fitted.precision[place] > criteria.TOLD)
+
+
+def walked(fitted: Fit, place: int) -> tuple[float, float]:
+    """Numbers below and above one of the vector from which on the trials speak against it, all else as fitted.
+
+    Its profile at the level of `determined`, in steps that double and are then halved; a bound where they never do.
+    """
+    value, bounds = float(fitted.vector[place]), (float(each[place]) for each in fitted.model.bounds)
+    _, p = fitted.model.parameters[place - fitted.model.shape_count]
+    least = FIRST_WALK * (1.0 if p.logarithmic else abs(value))
+    below, above = (_walked_to(fitted, place, value, end, np.copysign(least, end - value)) for end in bounds)
+    return below, above
+
+
+def _walked_to(fitted: Fit, place: int, value: float, end: float, step: float) -> float:
+    """One of the two, towards a bound."""
+    allowed = chi2.ppf(criteria.DETERMINED, 1) + _misfit(fitted, place, value)
+    inside, way = value, step
+    while step and abs(way) < abs(end - value) and _misfit(fitted, place, value + way) <= allowed:
+        inside, way = value + way, 2.0 * way
+    outside = value + way if step and abs(way) < abs(end - value) else end
+    if _misfit(fitted, place, outside) <= allowed:
+        return outside
+    for _ in range(WALK_HALVINGS):
+        middle = 0.5 * (inside + outside)
+        inside, outside = (middle, outside) if _misfit(fitted, place, middle) <= allowed else (inside, middle)
+    return outside
+
+
+def _misfit(fitted: Fit, place: int, value: float) -> float:
+    """Sum of squared white residuals with another number in the vector."""
+    vector = fitted.vector.copy()
+    vector[place] = value
+    return float(sum(left @ left for left in fitted.model.evaluated(vector, fitted.nuisance).residuals))
 
 
 def at_bounds(fitted: Fit) -> tuple[str, ...]:
@@ -66,6 +106,8 @@ def sandwich(fitted: Fit) -> Array:
     return np.asarray(inner @ (slopes.T @ slopes * count / max(count - 1, 1)) @ inner)
 
 
+FIRST_WALK, WALK_HALVINGS = 0.01, 8
+"""Of a number's size, the first step along its profile; and how often its end is halved."""
 SLOPE_STEP = 0.05
 """By which, in standard errors, a parameter is changed for the slope of what an effect adds."""
 
@@ -110,13 +152,16 @@ def determined(fitted: Fit, effect: Effect, names: tuple[str, ...] = ()) -> bool
     Some strength must stand off its bounds (a share may be whole), and those that do must differ from none together
     with those that are at none, which cannot take their place: Wald's statistic on the larger of the model's covariance
     and the trials' own scatter, both with the effect's form as fitted. A logarithmic strength has no none: its interval
-    must be narrower than its range.
+    must be narrower than its range. One without a slope is told by its profile.
     """
     found = strengths(fitted, effect, names)
     whole = [each for each in found if each.parameter.high == 1.0 and each.value > criteria.AT_BOUND]
     free = [each for each in found if each.free]
     if not free:
         return bool(whole)
+    stepped = [each for each in free if not each.parameter.logarithmic and not slopes(fitted, each.place)]
+    if any(walked(fitted, each.place)[0] > max(each.parameter.low, 0.0) for each in stepped):
+        return True
     if not all(each.parameter.logarithmic for each in free):
         free += [each for each in found if each.absent]
     places = [each.place for each in free]

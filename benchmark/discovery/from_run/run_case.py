@@ -13,7 +13,7 @@ from benchmark.discovery.discovery_result import Array, Contrast, Place
 from benchmark.discovery.from_run.finished_run import FinishedRun
 from benchmark.discovery.report.discovery_record import LayerGap
 from benchmark.errors import InputError
-from benchmark.models.scenario_effects import open_radius, specimen_layers
+from benchmark.models.scenario_effects import measured_height, open_radius, specimen_layers
 from benchmark.physics import TrialContext
 from benchmark.response import Ramp
 from wavemodel.physics import Physics, QuasiStaticPress, drive_by_force
@@ -89,7 +89,7 @@ def _case(run: FinishedRun, fitted: NDArray[np.bool_], held: NDArray[np.bool_]) 
     stack = [layer.thickness for layer in run.scenario.tissue.layers if np.isfinite(layer.thickness)]
     context = TrialContext(
         tool_radius=run.scenario.tool.radius,
-        thickness=float(sum(stack)),
+        thickness=measured_height(float(sum(stack)), run.scenario.support, run.scenario.tool.radius),
         peak_depth=float(run.reference[:, 0].max()),
         peak_force=float(run.force.max()),
         duration=float(run.time[-1]),

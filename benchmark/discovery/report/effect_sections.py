@@ -165,7 +165,8 @@ def _row(estimate: Estimate, meaning: str) -> tuple[object, ...]:
 
 ADVICE = {
     "cannot_tell": f"Repeat the press on one specimen: at least {ENOUGH_TRIALS} trials in all, two or more of one "
-    "condition, more where they scatter, and at a second and third speed where time shifts are warned of.",
+    "condition, more where they scatter, at a second and third speed where time shifts are warned of, and with a rigid "
+    "block under each tool and all tools on one specimen where gains are.",
     "no_discrepancy": "Nothing needs to be added. A smaller disagreement would need more trials: its size falls with "
     "the root of their number.",
     "conditional": "Measure a second condition (another rate, depth or tool) and run this again with both: only then "

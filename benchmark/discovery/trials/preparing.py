@@ -29,7 +29,7 @@ from benchmark.discovery.trials.study import ConditionData, Study
 from benchmark.errors import InputError
 from benchmark.files import Camera, Session, Tissue, Trial, stretched_tissue
 from benchmark.files.sessions.specimens import ONE_HEIGHT
-from benchmark.models.scenario_effects import open_radius, specimen_layers
+from benchmark.models.scenario_effects import measured_height, open_radius, specimen_layers
 from benchmark.physics import TrialContext
 
 MOST_RAW = 4000
@@ -230,7 +230,7 @@ def _context(session: Session, group: Sequence[RawTrial], data: Array, grid: Lay
     first, specimen = group[0].trial, _pressed(session, group)
     return TrialContext(
         tool_radius=first.tool.radius,
-        thickness=_finite(specimen.thickness),
+        thickness=measured_height(specimen.thickness, first.support, first.tool.radius),
         peak_depth=float(data[..., 1].max()),
         peak_force=float(np.median(np.ptp(data[..., 3], axis=1))),
         duration=float((data[:, -1, 0] - data[:, 0, 0]).max()),
@@ -241,7 +241,3 @@ def _context(session: Session, group: Sequence[RawTrial], data: Array, grid: Lay
         contact=first.tool.contact,
         edge_radius=first.tool.edge_radius or 0.0,
     )
-
-
-def _finite(thickness: float) -> float:
-    return thickness if np.isfinite(thickness) else 0.05

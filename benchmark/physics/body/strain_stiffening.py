@@ -35,7 +35,7 @@ DESCRIPTION = EffectDescription(
     slug="strain_stiffening",
     acts_on="body",
     sentence="The tissue becomes stiffer the deeper it is pressed: the force grows faster than the base law.",
-    equation="F = f(d) (1 + b_1 x + b_2 x^2), x = d / thickness",
+    equation="F = f(d) (1 + b_1 x + b_2 x^2), x = d / thickness (a half-space: over four tool radii)",
     source="Hayes et al. 1972, J Biomech 5:541 (linear law); first terms of any smooth hyperelastic correction",
     parameters=FIRST_TERMS,
     in_wave="on top of its elastic law",
@@ -43,7 +43,7 @@ DESCRIPTION = EffectDescription(
 )
 EXPONENTIAL = replace(
     DESCRIPTION,
-    equation="F = f(d) (1 + (b_1 x + b_2 x^2) e^(b_3 x^2)), x = d / thickness",
+    equation="F = f(d) (1 + (b_1 x + b_2 x^2) e^(b_3 x^2)), x = d / thickness (a half-space: over four tool radii)",
     source=f"{DESCRIPTION.source}; Y. C. Fung 1967, Am J Physiol 213:1532 (exponential law)",
     parameters=(*FIRST_TERMS, logarithmic("b_3", "", 1e-3, 1e3, "exponent b_3 with which those grow")),
     may_lack=(("b_3",),),

@@ -74,7 +74,11 @@ def linear_fit(scatter, parameters, vector, variance):
         values=lambda v: {"effect": dict(zip([p.name for p in parameters], v, strict=True))},
     )
     return SimpleNamespace(
-        model=model, vector=np.array(vector), covariance=np.diag(variance), blocks=SimpleNamespace(slope=scatter)
+        model=model,
+        vector=np.array(vector),
+        covariance=np.diag(variance),
+        precision=np.zeros(len(vector)),
+        blocks=SimpleNamespace(slope=scatter),
     )
 
 

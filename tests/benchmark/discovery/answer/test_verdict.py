@@ -101,6 +101,14 @@ def test_agreement_is_not_shown_where_time_shifts_may_hide_something():
     assert verdict(facts(by_speed=True)) == verdict(facts())  # what was found beside them stands
 
 
+def test_agreement_is_not_shown_where_gains_part_conditions():
+    agreeing = {"p": 0.4, "p_cells": 0.4, "effects": (), "lookalikes": ()}
+    hidden = facts(**agreeing, parted=True)
+    assert verdict(hidden) == "cannot_tell"
+    assert "part the conditions" in statement("cannot_tell", hidden)
+    assert verdict(facts(parted=True)) == verdict(facts())
+
+
 def test_too_few_trials_cannot_tell():
     made = facts(enough=False)
     assert verdict(made) == "cannot_tell"

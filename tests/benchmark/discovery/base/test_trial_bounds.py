@@ -146,11 +146,14 @@ def test_time_shifts_that_trials_share_are_said(problem, slow, fast, words):
     assert words in text
 
 
-@pytest.mark.parametrize(("apart", "scatter", "said"), [(0.3, 0.01, True), (0.08, 0.01, False), (0.3, 0.15, False)])
+@pytest.mark.parametrize(
+    ("apart", "scatter", "said"),
+    [(0.3, 0.01, True), (0.08, 0.01, False), (0.08, 0.005, True), (0.04, 0.001, False), (0.3, 0.06, False)],
+)
 def test_gains_that_part_conditions_are_said(problem, apart, scatter, said):
     own = np.zeros((6, len(OWN)))
     own[:, OWN.index("gain")] = np.repeat([0.0, np.log1p(apart)], 3) + scatter * np.tile([-1.0, 1.0, 0.0], 2)
-    words = "gains are 30 % larger in speed 6 than in speed 1.5: what makes one condition stiffer"
+    words = f"gains are {100.0 * apart:.2g} % larger in speed 6 than in speed 1.5: what makes one condition stiffer"
     assert any(words in text for text in large_remarks(problem, own)) is said
 
 

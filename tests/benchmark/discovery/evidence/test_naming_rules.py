@@ -590,6 +590,7 @@ class Told:
     def __init__(self, values, variance, *parameters):
         self.vector, self.covariance = np.asarray(values, dtype=float), np.diag(np.asarray(variance, dtype=float))
         self.blocks = SimpleNamespace(slope=np.zeros((6, len(values))))
+        self.precision = np.zeros(len(values))
         self.model = SimpleNamespace(
             shape_count=0,
             parameters=tuple(("one", p) for p in parameters),
@@ -682,6 +683,23 @@ def test_a_share_at_its_bound_is_not_told_by_what_it_adds():
     one = strong(amplitude="share", amplitudes=())
     made = Told((0.95,), (1e-6,), SHARE)
     assert not adds_force(made, one)
+
+
+@pytest.mark.parametrize(
+    ("between", "told", "ends"),
+    [((0.9, 1.2), True, (0.9, 1.2)), ((-1.0, 1.2), False, (0.0, 1.2)), ((0.9, 200.0), True, (0.9, 100.0))],
+)
+def test_a_strength_without_a_slope_is_told_by_how_far_it_may_go(between, told, ends):
+    """A pull at which a tool lets go between two samples: no small change of it changes anything."""
+    one = strong(amplitude="force", amplitudes=())
+    made = Told((1.0,), (1e4,), FORCE)
+    made.precision, made.nuisance, made.model.effects = np.array([1e-4]), None, (one,)
+    made.model.bounds = (np.zeros(1), np.array([100.0]))
+    inside = lambda vector: between[0] < vector[0] < between[1]  # noqa: E731
+    made.model.evaluated = lambda vector, _: SimpleNamespace(residuals=[np.full(6, 0.0 if inside(vector) else 1.0)] * 3)
+    assert determined(made, one) is told
+    [(_, estimate)] = parameter_evidence.effect_estimates(made)
+    np.testing.assert_allclose(estimate.ci95, ends, rtol=0.01, atol=0.01)
 
 
 def test_a_strength_is_judged_with_its_form_as_fitted():
