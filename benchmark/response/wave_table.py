@@ -135,16 +135,23 @@ def _sheet_fields(
 
 
 @lru_cache(maxsize=16)
-def _layered_wave(layers: tuple[Any, ...], radius: float, contact: str) -> Any:
-    """The wave of a large press, which takes seconds to set up: once for all conditions with the same tool."""
+def _layered_wave(layers: tuple[Any, ...], radius: float, contact: str, reach: float) -> Any:
+    """The wave of a large press, which takes seconds to set up: once for conditions with the same tool and reach."""
     from wavemodel import DiscTool, LayeredWave
 
-    return LayeredWave(list(layers), DiscTool(radius, contact), large_press="corrected")
+    return LayeredWave(list(layers), DiscTool(radius, contact), large_press="corrected", reach=reach)
+
+
+def _reach(layers: Sequence[WaveLayer], depth: float) -> float:
+    """A depth, m, that holds another one: halves of the stack's height, so that like presses share a wave."""
+    height = sum(layer.thickness for layer in layers)
+    return float(height * 2.0 ** np.ceil(np.log2(depth / height)))
 
 
 def _layered_force(tissue: Tissue, tool: Tool, grid: Array) -> Array:
     """Force (k,) of a large press as far as its range goes, then on with the growth over the linear law."""
-    wave = _layered_wave(tuple(_layers(tissue)), tool.radius, _contact(tool))
+    layers = tuple(_layers(tissue))
+    wave = _layered_wave(layers, tool.radius, _contact(tool), _reach(layers, float(grid[-1])))
     linear = grid / wave.law.compliance
     reach = 0.999 * wave.law.large.deepest if wave.law.large is not None else grid[-1]
     inside = grid <= reach

@@ -11,7 +11,7 @@ from wavemodel.errors import NotCoveredError, WaveError
 from wavemodel.integrators.viscoelastic import Damping, Prony
 from wavemodel.layered.field import ModalState
 from wavemodel.layered.finite_strain.correction import FiniteStrainLaw, finite_strain_law
-from wavemodel.layered.finite_strain.equilibrium import SHORTEST, SPACING, ModalEquilibrium, press_path
+from wavemodel.layered.finite_strain.equilibrium import SHORTEST, ModalEquilibrium, press_path, spacing_of
 from wavemodel.layered.finite_strain.modal_body import POINTS_PER_MODE, StackBody, disc_modes, thickness_of
 from wavemodel.layered.finite_strain.sliding_contact import RoundedTool, SlidingContact
 from wavemodel.layered.finite_strain.tool_contact import BondedContact, PressureContact, ToolContact
@@ -45,6 +45,8 @@ VERIFIED, VERIFIED_PRESSURE, VERIFIED_RADII = 0.3, 0.4, 1.75
 heights of the stack and radii under a pressure. There, on 1 to 12 mm of radius, maxima and profiles are within 0.9 % of
 peak at every load; under a bonded rigid tool within 1.7 % and 2.7 %. Two radii deep a pressure of 1 to 2 mm of radius
 is up to 4 % off."""
+BEYOND = 1.05
+"""Times the depth that is asked for, since modes alone are up to some per cent stiffer than the whole."""
 FEWEST_LEVELS = 4
 DEEPEST_START = 10.0
 """Radii of the tool that the path's first step, a share of the height, may press: with 50 no step that a path allows
@@ -104,8 +106,10 @@ def with_slip(physics: Physics | None, slip: ShearLimit | None, press: Press) ->
     return replace(physics or Physics(), slip=interface_slip(press, slip))
 
 
-def finite_strain_of(word: str, press: Press, tool: DiscTool, integrator: str) -> FiniteStrainLaw | None:
-    """What finite strain adds, or None.
+def finite_strain_of(
+    word: str, press: Press, tool: DiscTool, integrator: str, reach: float | None = None
+) -> FiniteStrainLaw | None:
+    """What finite strain adds, or None; to a depth, m, where that is less than the word says.
 
     Raises
     ------
@@ -119,15 +123,15 @@ def finite_strain_of(word: str, press: Press, tool: DiscTool, integrator: str) -
     if word == "linear" or (word == "auto" and integrator == "exact"):
         return None
     if word == "auto":
-        return _where_covered(press, tool)
+        return _where_covered(press, tool, reach)
     _without_inertia("the large-press correction", integrator)
-    return correction(press, tool, deep=word == "deep")
+    return correction(press, tool, reach, deep=word == "deep")
 
 
-def _where_covered(press: Press, tool: DiscTool) -> FiniteStrainLaw | None:
+def _where_covered(press: Press, tool: DiscTool, reach: float | None) -> FiniteStrainLaw | None:
     """The correction, or None where it does not cover the press; a run beyond small strain then warns."""
     try:
-        return correction(press, tool)
+        return correction(press, tool, reach)
     except WaveError:
         if tool.contact == "rigid_frictional":
             raise
@@ -139,13 +143,15 @@ def _without_inertia(what: str, integrator: str) -> None:
         raise NotCoveredError(f"the layered wave does not cover inertia with {what}: use 'auto' or 'quasi_static'")
 
 
-def correction(press: Press, tool: DiscTool, *, deep: bool = False) -> FiniteStrainLaw:
+def correction(press: Press, tool: DiscTool, reach: float | None = None, *, deep: bool = False) -> FiniteStrainLaw:
     """Set up the correction of a press.
 
     Parameters
     ----------
     press, tool
         What is pressed; where the tissue slides over the tool's edge, the press is that of its face.
+    reach
+        Depth, m, to which it is wanted, if that is less than `REACH` of the stack.
     deep
         Follow it to `DEEP`, and let the law go on from where the path ends, along its tangent, to the stack's height.
 
@@ -163,7 +169,8 @@ def correction(press: Press, tool: DiscTool, *, deep: bool = False) -> FiniteStr
         raise NotCoveredError("the large-press correction covers a bonded base, not a free lower face")
     _require_contact(tool)
     height = press.stack.height
-    if SPACING * height > DEEPEST_START * tool.radius:
+    far = min((DEEP if deep else REACH) * height, np.inf if reach is None else BEYOND * reach)
+    if spacing_of(height, far) > DEEPEST_START * tool.radius:
         raise WaveError("large press: the tool is too small beside the stack for a path to its heights")
     border = BORDER * press.field.domain.width
     limit = min(max(_resolution(press, tool) / tool.radius, RESOLUTION / height), 3.1 * MOST_MODES / border)
@@ -171,7 +178,7 @@ def correction(press: Press, tool: DiscTool, *, deep: bool = False) -> FiniteStr
     body = StackBody(disc_modes(border, limit, points), thickness_of(press.stack))
     equilibrium = ModalEquilibrium(body, contact_of(press, tool, body))
     shortest = SHORTEST_SLIDING if tool.slides else SHORTEST
-    path = press_path(equilibrium, height, (DEEP if deep else REACH) * height, shortest)
+    path = press_path(equilibrium, height, far, shortest)
     if path.force.size < FEWEST_LEVELS:
         raise WaveError("large press: no equilibrium was found beyond a small load")
     radius = tool.radius if tool.rigid and not tool.slides else 0.0  # a thick skin comes off the middle of a face

@@ -32,20 +32,26 @@ def notices(press: Press, tool: DiscTool, history: History, method: str, ringing
 
 
 def _strain(press: Press, tool: DiscTool, history: History) -> Iterator[str]:
-    deepest, height = float(abs(history.depth).max()), press.stack.height
-    if press.field.large is not None:
-        verified = verified_depth(tool, height)
-        if deepest > verified:
+    pressed, pulled, height = float(history.depth.max()), -float(history.depth.min()), press.stack.height
+    deepest, of_stack = max(pressed, pulled), f"of the {height * 1e3:.3g} mm stack"
+    verified = verified_depth(tool, height)
+    if press.field.large is None:
+        if deepest > SMALL_STRAIN * height:
             yield (
-                f"layered wave: the deepest press, {deepest * 1e3:.3g} mm, is {100 * deepest / height:.3g} % of the "
-                f"{height * 1e3:.3g} mm stack and beyond the {verified * 1e3:.3g} mm down to which the large-press "
-                f"correction is verified under this tool{_continued(press, deepest)}"
+                f"layered wave: the deepest press, {deepest * 1e3:.3g} mm, is {100 * deepest / height:.3g} % {of_stack}"
+                f"; this wave is linear, for small strain (up to about {100 * SMALL_STRAIN:.0f} %)"
             )
-    elif deepest > SMALL_STRAIN * height:
+        return
+    if pressed > verified:
         yield (
-            f"layered wave: the deepest press, {deepest * 1e3:.3g} mm, is {100 * deepest / height:.3g} % of the "
-            f"{height * 1e3:.3g} mm stack; this wave is linear, for small strain (up to about "
-            f"{100 * SMALL_STRAIN:.0f} %)"
+            f"layered wave: the deepest press, {pressed * 1e3:.3g} mm, is {100 * pressed / height:.3g} % {of_stack} "
+            f"and beyond the {verified * 1e3:.3g} mm down to which the large-press correction is verified under this tool"
+            f"{_continued(press, pressed)}"
+        )
+    if pulled > SMALL_STRAIN * height:
+        yield (
+            f"layered wave: a pull to {pulled * 1e3:.3g} mm above the surface is followed in small strain (up to about "
+            f"{100 * SMALL_STRAIN:.0f} % {of_stack}): finite strain is worked out for a push"
         )
 
 

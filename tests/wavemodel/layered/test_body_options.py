@@ -110,3 +110,17 @@ def test_a_wide_pressure_on_a_thin_slab_squeezes_it_as_between_plates(wide):
     pressed = wave.run("force", np.ones(1), np.array([stress * np.pi * (wide * height) ** 2]))
     profile = pressed.profile(-1, np.linspace(0.0, 0.6, 7) * wide * height)[0]
     np.testing.assert_allclose(profile, (1.0 - stretch) * height, rtol=5e-3)
+
+
+@pytest.mark.parametrize("contact", ["rigid_bonded", "uniform_pressure"])
+def test_a_shallow_press_of_a_thick_stack_is_worked_out_no_further_than_it_goes(contact):
+    layers, tool = [WaveLayer("gel", 30e-3, 1000.0, 35e3, 0.45)], DiscTool(5e-3, contact)
+    shallow = LayeredWave(layers, tool, large_press="corrected", reach=0.6e-3)
+    deeper = LayeredWave(layers, tool, large_press="corrected", reach=4e-3)
+    depth = np.linspace(0.05e-3, 0.6e-3, 12)
+    np.testing.assert_allclose(shallow.law(depth), deeper.law(depth), rtol=1e-3)
+    assert 0.6e-3 <= shallow.law.large.deepest < 1.3e-3
+    with pytest.raises(WaveError, match=r"reach = -0.001 m is not allowed"):
+        LayeredWave(layers, tool, reach=-1e-3)
+    with pytest.raises(WaveError, match="beyond the range"):
+        shallow.law(np.array([2e-3]))

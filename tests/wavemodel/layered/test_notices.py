@@ -26,3 +26,12 @@ def test_says_what_costs_accuracy(skin, options, words):
     found = warnings_of(skin(), **options)
     assert len(found) == 1
     assert words in found[0]
+
+
+def test_a_pull_is_said_to_be_of_small_strain(skin):
+    """Of a pressure that sucks, a tenth of the stack high, the finite elements are a tenth of the depth away."""
+    wave = LayeredWave(skin(), DiscTool(3e-3), discretisation=WaveDiscretisation(window=40e-3, modes=24))
+    height = wave.press.stack.height
+    for depth, said in ((-0.1 * height, True), (-0.01 * height, False), (0.1 * height, False)):
+        texts = wave.run("depth", np.ones(1), np.array([depth])).warnings
+        assert any("a pull to" in text and "small strain" in text for text in texts) is said

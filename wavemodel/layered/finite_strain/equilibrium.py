@@ -26,6 +26,8 @@ FORCING = 0.1
 DESCENT = 1e-4
 SPACING = 0.025
 """Of depth between levels, in heights of the stack."""
+LEVELS = 8
+"""At least so many levels on the way."""
 FASTEST = 1.6
 """A step of force is at most so many times the one before."""
 SHORTEST = 1.0 / 32.0
@@ -218,6 +220,11 @@ class _ToDepth:
         return path[-1].state if self.body.body.state(ahead) is None else ahead
 
 
+def spacing_of(height: float, reach: float) -> float:
+    """Depth between the levels of a path to a depth (m) in a stack of a height (m), m."""
+    return min(SPACING * height, reach / LEVELS)
+
+
 def press_path(equilibrium: ModalEquilibrium, height: float, reach: float, shortest: float = SHORTEST) -> PressPath:
     """Load a body until its depth is `reach`, or until it has no equilibrium near the one before.
 
@@ -233,7 +240,7 @@ def press_path(equilibrium: ModalEquilibrium, height: float, reach: float, short
         Share of the first step of force below which a step ends the path.
     """
     linear, compliance = equilibrium.linear, equilibrium.contact.compliance
-    spacing = SPACING * height
+    spacing = spacing_of(height, reach)
     step = spacing / compliance
     loading = _ToDepth(equilibrium, linear, compliance, spacing, reach)
     path = follow(loading, [_Pressed(0.0, np.zeros_like(linear), equilibrium.contact)], step, shortest * step)
