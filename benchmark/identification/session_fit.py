@@ -12,7 +12,7 @@ import numpy as np
 import scipy
 
 from benchmark.identification.fitted_parameters import FittedParameter, LayerLike, fitted_parameters
-from benchmark.identification.pooling import JointFit, PooledStiffness, fit_jointly, fold_between, pool
+from benchmark.identification.pooling import CHANCE, JointFit, PooledStiffness, fit_jointly, fold_between, pool
 from benchmark.identification.trial_data import FittingError, NoContactError, TrialData
 from benchmark.identification.trial_fit import TrialFit, fit_trial, prepare_rows
 from benchmark.response.force_curve import Array
@@ -203,7 +203,7 @@ SCATTER = 0.25
 def fit_warnings(trials: Sequence[TrialFit], pooled: PooledStiffness) -> list[str]:
     """Sentences on what limits the fit, each once for all trials."""
     scatter = _conditions(trials) or _scatter(trials, pooled)
-    found = (_far(pooled), _time(trials), _misfit(trials), _at_end(trials), scatter, _few(pooled))
+    found = (_far(pooled), _time(trials), _misfit(trials), _at_end(trials), _parted(trials), scatter, _few(pooled))
     return [text for text in found if text]
 
 
@@ -225,6 +225,30 @@ def fit_notes(trials: Sequence[TrialFit], pooled: PooledStiffness, joint: JointF
     if between is not None and between < 0.05:
         notes.append(f"the stiffness differs between conditions (one-way F test, p = {between:.3g})")
     return notes
+
+
+PARTED = 1.05
+"""Fold between the mean stiffness of conditions, surely more than chance, that is told of: more than a radius told to
+1 % makes, whose square or cube the force goes with."""
+
+
+def _parted(trials: Sequence[TrialFit]) -> str:
+    """Conditions that differ surely, but by less than makes one law of no use."""
+    means, between = _means(trials), conditions_p(trials)
+    soft, stiff = min(means, key=lambda name: means[name]), max(means, key=lambda name: means[name])
+    fold = means[stiff] / means[soft]
+    if between is None or between >= CHANCE or fold <= PARTED or conditions_fold(trials) is not None:
+        return ""
+    return (
+        f"{stiff} is {fold:.3g} times as stiff as {soft}, beyond their trials' scatter (p = {between:.2g}): the "
+        "interval holds for their mean; a machine that gives way, another size of a tool or a rate may be in it, which "
+        "the command discover looks for"
+    )
+
+
+def _means(trials: Sequence[TrialFit]) -> dict[str, float]:
+    """Geometric mean of the stiffness factors of each condition."""
+    return {name: math.exp(math.fsum(logs) / len(logs)) for name, logs in _by_condition(trials).items()}
 
 
 def conditions_p(trials: Sequence[TrialFit]) -> float | None:
@@ -252,7 +276,7 @@ def _conditions(trials: Sequence[TrialFit]) -> str:
     fold = conditions_fold(trials)
     if fold is None:
         return ""
-    means = {name: math.exp(math.fsum(logs) / len(logs)) for name, logs in _by_condition(trials).items()}
+    means = _means(trials)
     soft, stiff = min(means, key=lambda name: means[name]), max(means, key=lambda name: means[name])
     return (
         f"one law with one stiffness does not follow all conditions: {stiff} is {fold:.3g} times as stiff as {soft} "

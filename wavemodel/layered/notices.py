@@ -45,7 +45,7 @@ def _strain(press: Press, tool: DiscTool, history: History) -> Iterator[str]:
     if pressed > verified:
         yield (
             f"layered wave: the deepest press, {pressed * 1e3:.3g} mm, is {100 * pressed / height:.3g} % {of_stack} "
-            f"and beyond the {verified * 1e3:.3g} mm down to which the large-press correction is verified under this tool"
+            f"and beyond the {verified * 1e3:.3g} mm to which the large-press correction is verified under this tool"
             f"{_continued(press, pressed)}"
         )
     if pulled > SMALL_STRAIN * height:

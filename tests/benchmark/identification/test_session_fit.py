@@ -217,6 +217,18 @@ def test_conditions_that_differ_are_noted(trial, silicone):
     assert "conditions differ" not in fit_headline(alike)
 
 
+@pytest.mark.parametrize(("apart", "said"), [(1.08, True), (1.03, False), (1.5, False)])
+def test_conditions_that_part_a_little_but_surely_are_told_of(trial, silicone, apart, said):
+    """As a compliance of the machine does under two tools: 8 %, beside an interval that held neither."""
+    made = [
+        trial(f"{name}{n}", name, factor=factor * (1 + 0.002 * n), noise=1e-3, seed=n)
+        for name, factor in (("narrow", apart), ("wide", 1.0))
+        for n in range(4)
+    ]
+    words = f"narrow is {apart:.3g} times as stiff as wide, beyond their trials' scatter"
+    assert any(text.startswith(words) for text in fit_session(made, [silicone]).warnings) is said
+
+
 def test_the_joint_value_is_reported(session, silicone):
     fit = fit_session(session(np.random.default_rng(0)), [silicone])
     assert any(f"one common factor fitted to all trials is {fit.joint.value:.6g}" in note for note in fit.notes)
