@@ -79,6 +79,30 @@ def doubtful_times(names: Sequence[str], tables: Sequence[TrialTable]) -> list[s
     return [f"times may be milliseconds where seconds are read: {', '.join(found[:3])}{more}"]
 
 
+TWO_KINDS, CLOSER = 1.25, 3.0
+"""Fold between the peak forces of two kinds of trials, and times the spread within either, from which they are two."""
+
+
+def doubtful_kinds(names: Sequence[str], tables: Sequence[TrialTable], conditions: Sequence[str]) -> list[str]:
+    """A warning for each condition whose trials, which move alike, are of two kinds by their peak force."""
+    said = []
+    for condition in dict.fromkeys(conditions):
+        mine = [k for k, each in enumerate(conditions) if each == condition and np.ptp(tables[k].force) > 0.0]
+        peaks = sorted((float(np.ptp(tables[k].force)), names[k]) for k in mine)
+        gaps = np.diff(np.log([peak for peak, _ in peaks]))
+        split = int(np.argmax(gaps)) + 1 if gaps.size else 0
+        spread = sum(np.log(each[-1][0] / each[0][0]) for each in (peaks[:split], peaks[split:]) if each)
+        if not 2 <= split <= len(peaks) - 2 or gaps[split - 1] < max(np.log(TWO_KINDS), CLOSER * spread):
+            continue
+        weak, strong = peaks[:split], peaks[split:]
+        said.append(
+            f"{condition}: {len(weak)} trials reach {weak[0][0]:.3g} to {weak[-1][0]:.3g} N ({weak[0][1]}, ...) and "
+            f"{len(strong)} that move alike {strong[0][0]:.3g} to {strong[-1][0]:.3g} N ({strong[0][1]}, ...): another "
+            "tool or specimen? Give them a condition of their own"
+        )
+    return said
+
+
 def _upside_down(table: TrialTable) -> bool:
     """Whether force and depth leave where they began downwards, and not a fifth as far upwards."""
     few = max(5, len(table.force) // 50)

@@ -21,7 +21,7 @@ from benchmark.files.loading import Overrides
 from benchmark.files.overrides import put_in
 from benchmark.files.schema import validated
 from benchmark.files.sessions.description import SessionFile
-from benchmark.files.sessions.doubts import doubtful_forces, doubtful_times
+from benchmark.files.sessions.doubts import doubtful_forces, doubtful_kinds, doubtful_times
 from benchmark.files.sessions.recordings import Recording, read_recordings, with_headers
 from benchmark.files.sessions.session_folder import (
     SESSION_FILE,
@@ -143,14 +143,15 @@ def propose(folder: Path, told: Overrides = NOTHING) -> Proposal:
     if not _holds(folder / SPECIMEN_FILE, body):
         _refuse_existing(folder / SPECIMEN_FILE)
     texts = {SPECIMEN_FILE: body, SESSION_FILE: "\n".join([*head, *trials]) + "\n"}
-    doubts = (*_doubts(read.trials), *said)
+    doubts = (*_doubts(read.trials, named), *said)
     return Proposal(texts, to_say, (*doubts, *read.aside, *unclosed_recordings(source), *unused_films(source, paths)))
 
 
-def _doubts(trials: Sequence[Recording]) -> list[str]:
-    """What is odd about the numbers of files, as a command says that uses them."""
+def _doubts(trials: Sequence[Recording], conditions: Sequence[str]) -> list[str]:
+    """What is odd about the numbers of files, as a command says that uses them, and about the trials of a condition."""
     names, tables = [each.entry.file for each in trials], [each.table for each in trials]
-    return [*doubtful_forces(names, tables), *doubtful_times(names, tables)]
+    kinds = doubtful_kinds(names, tables, conditions)
+    return [*doubtful_forces(names, tables), *doubtful_times(names, tables), *kinds]
 
 
 def _importing(told: Overrides) -> dict[str, str]:

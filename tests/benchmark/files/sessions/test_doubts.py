@@ -6,7 +6,7 @@ import pytest
 from bench_hw.tables import TrialTable, write_trial_csv
 from benchmark.errors import InputError
 from benchmark.files import load_session
-from benchmark.files.sessions.doubts import EITHER_WAY, doubtful_forces, doubtful_times
+from benchmark.files.sessions.doubts import EITHER_WAY, doubtful_forces, doubtful_kinds, doubtful_times
 from tests.benchmark.files.sessions.replicates import replicate
 
 
@@ -98,3 +98,19 @@ def test_what_a_strict_table_is_answered_by_reads_it(tmp_path, name):
     with pytest.raises(InputError, match=r"import\.drop_empty=true"):
         load_session(path)
     assert len(load_session(path, {"import.drop_empty": "true"}).trials[0].table.time) == 399
+
+
+@pytest.mark.parametrize(
+    ("times", "said"),
+    [
+        ((1.0, 1.02, 1.6, 1.62), True),
+        ((1.0, 1.02, 1.2, 1.22), False),  # specimens scatter so
+        ((1.0, 1.15, 1.6, 1.75), False),  # no gap beside the spread
+        ((1.0, 1.6, 1.62, 1.64), False),  # one odd trial is no kind
+    ],
+)
+def test_trials_that_move_alike_under_two_tools_are_told_of(times, said):
+    tables = [press(lambda force, fold=fold: fold * force) for fold in times]
+    names = ["a", "b", "c", "d"]
+    assert bool(doubtful_kinds(names, tables, ["slow"] * 4)) is said
+    assert not doubtful_kinds(names, tables, ["slow", "slow", "wide", "wide"])
