@@ -1,7 +1,8 @@
 """A recorded attempt: each tool's motion and force and the targets shown, from one CSV file, and its measures.
 
 Columns `time_s, tool, x_mm, y_mm, depth_mm, force_N`, a row for each tool and instant; of a task also `target`,
-`target_x_mm, target_y_mm, target_depth_mm` and, where a force was asked for, `target_force_N`.
+`target_x_mm, target_y_mm, target_depth_mm` and, where a force was asked for, `target_force_N`. A target is known by its
+name, a number or text; rows before the first and after the last that names one are no part of the task.
 
 Each measure of motion names its source: arrays in, one number out, SI units. Mean jerk is not among them: it does not
 part levels of skill (F. Aghazadeh, B. Zheng, M. Tavakoli and H. Rouhani 2023, Sensors 23:3146), which the log
@@ -12,15 +13,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
+from scipy.interpolate import make_interp_spline
 from scipy.signal import butter, sosfiltfilt
 
 from bench_hw.storage.regular_file import TABLE, open_regular
 from benchmark.errors import InputError
+from reports.formatting import counted
 
 Array = NDArray[np.float64]
 NEEDED = ("time_s", "tool", "x_mm", "y_mm", "depth_mm", "force_N")
@@ -31,7 +35,15 @@ SHORTEST, LONGEST = 0.5, 86_400.0
 LARGEST = 1e9
 """Of any number in a record."""
 RATE = 100.0
-"""Hz to which an attempt is brought, linear between its rows."""
+"""Hz to which an attempt is brought: place, depth and force linear between its rows, which adds no depth and no way."""
+DEGREE, MIRRORED, CLOSEST = 7, 12, 2.5e-3
+"""Of the spline through the rows from which what a spectrum tells is taken, with so many rows mirrored at each end so
+that it does not swing there. Rows closer than so many s are one: at 100 Hz they tell no more, and a spline swings."""
+HIGHEST, ROWS = 12.0, 2.4
+"""Hz up to which the rows must carry motion, and rows a period: of rows at 30 Hz the spline keeps 96 % of an amplitude
+at 12 Hz and 99.7 % at 9.5 Hz, where straight lines keep 57 % and 71 %."""
+MOSTLY, HOLE = 0.95, 0.1
+"""Share of the time in which rows lie that close, and s without a row from which on no one knows what moved."""
 SMOOTHED = 10.0
 """Hz below which speed is taken for jerk and arc length (fourth-order Butterworth, both ways): hands stay below it."""
 SHAKING = (4.0, 20.0)
@@ -40,6 +52,8 @@ NEAR = 3e-3
 """m from a target within which a press counts as one of it."""
 CUTOFF, THRESHOLD, PADDING = 10.0, 0.05, 4
 """Of the spectral arc length, as its authors have them: Hz, share of the largest amplitude, doublings of padding."""
+SPECTRAL = ("log_dimensionless_jerk", "spectral_arc_length", "motion_frequency_hz", "tremor_um")
+"""Measures that depend on what lies between the rows."""
 TREMOR_BAND = (8.0, 12.0)
 """Hz: physiological tremor of the hand (R. J. Elble and W. C. Koller 1990, Tremor)."""
 
@@ -53,7 +67,9 @@ def path_length(position: Array) -> float:
 
 
 def economy_of_motion(position: Array, waypoints: Array) -> float:
-    """Straight way from the first position (n, 3) through waypoints (k, 3), over the path length; at most 1.
+    """Straight way from the first position (n, 3) through waypoints (k, 3), over the path length.
+
+    At most 1 for a path that goes through all of them in their order; of any other it says nothing.
 
     A. G. Gallagher and R. M. Satava 2002, Surg Endosc 16:1746 ("economy of movement"). NaN where nothing moved.
     """
@@ -159,6 +175,10 @@ class Attempt:
         (k, 3) x, y and depth of the targets in order, m; of none (0, 3).
     target_force
         (k,) N; NaN where none was asked for.
+    motion
+        By tool: `position` by a spline; without a tool whose rows are too far apart for one. None: `position`.
+    notes
+        What was found in reading it.
     """
 
     name: str
@@ -168,6 +188,40 @@ class Attempt:
     force: Mapping[int, Array]
     target: Array = field(default_factory=lambda: np.empty((0, 3)))
     target_force: Array = field(default_factory=lambda: np.empty(0))
+    motion: Mapping[int, Array] | None = None
+    notes: tuple[str, ...] = ()
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What its measures leave out, or are not to be compared for."""
+        missed = int(np.count_nonzero(~self.reached))
+        if missed:
+            left = f"{missed} of {counted(len(self.target), 'target')} not pressed: time and path are of a shorter task"
+            return (*self.notes, left)
+        if len(self.position) == 1 and not self._in_order:
+            return (*self.notes, "targets pressed in another order than shown: no economy of motion")
+        return self.notes
+
+    @cached_property
+    def reached(self) -> NDArray[np.bool_]:
+        """(k,) whether a tool came to each target, whenever."""
+        return np.array([any(at.any() for at in each.values()) for each in self._visits], dtype=bool)
+
+    @cached_property
+    def _visits(self) -> list[dict[int, NDArray[np.bool_]]]:
+        """For each target, by tool: (n,) whether it presses within `NEAR`; of a target in the air, is as near to it."""
+        return [{tool: _visited(position, one) for tool, position in self.position.items()} for one in self.target]
+
+    @cached_property
+    def _in_order(self) -> bool:
+        """Whether the first tool came to all targets one after the other, as they were shown."""
+        at = 0
+        for each in self._visits:
+            later = np.flatnonzero(next(iter(each.values()))[at:])
+            if not later.size:
+                return False
+            at += int(later[0])
+        return True
 
     def measures(self) -> dict[str, float]:
         """Every measure by its column's name; those of several tools are their mean, path lengths their sum."""
@@ -178,6 +232,7 @@ class Attempt:
         return {
             "time_s": float(self.time[-1] - self.time[0]),
             **means,
+            "targets_reached": float(np.mean(self.reached)) if self.target.size else float("nan"),
             "depth_error_mm": 1e3 * root_mean_square(depth),
             "force_error_N": root_mean_square(force),
             "bimanual_correlation": self._together(),
@@ -185,30 +240,26 @@ class Attempt:
 
     def _of_tool(self, tool: int) -> dict[str, float]:
         position = self.position[tool]
-        speed = _smooth(speed_of(position, RATE))
-        alone = len(self.position) == 1 and self.target.size
+        alone = len(self.position) == 1 and self.target.size and self._in_order
         return {
             "path_length_mm": 1e3 * path_length(position),
             "economy_of_motion": economy_of_motion(position, self.target) if alone else float("nan"),
-            "log_dimensionless_jerk": log_dimensionless_jerk(speed, RATE),
-            "spectral_arc_length": spectral_arc_length(speed, RATE),
-            "motion_frequency_hz": motion_frequency(position, RATE),
-            "tremor_um": 1e6 * tremor(_shaking(position), RATE),
+            **_smoothness(self.position.get(tool) if self.motion is None else self.motion.get(tool)),
         }
 
     def _accuracy(self) -> tuple[Array, Array]:
         """Deepest press within `NEAR` of each target less its depth (m), and largest force less its force (N)."""
         depth, force = [], []
-        for target, wanted in zip(self.target, self.target_force, strict=True):
-            best: tuple[float, float] | None = None
-            for tool, position in self.position.items():
-                near = np.linalg.norm(position[:, :2] - target[:2], axis=1) <= NEAR
-                if near.any():
-                    reached = float(position[near, 2].max()), float(self.force[tool][near].max())
-                    best = reached if best is None else max(best, reached)
-            if best is not None:
-                depth.append(best[0] - float(target[2]))
-                force.append(best[1] - float(wanted))
+        for target, wanted, each in zip(self.target, self.target_force, self._visits, strict=True):
+            pressed = [
+                (float(self.position[tool][at, 2].max()), float(self.force[tool][at].max()))
+                for tool, at in each.items()
+                if at.any()
+            ]
+            if pressed:
+                deepest, strongest = max(pressed)
+                depth.append(deepest - float(target[2]))
+                force.append(strongest - float(wanted))
         forces = np.array(force)
         return np.array(depth), forces[np.isfinite(forces)]
 
@@ -216,7 +267,8 @@ class Attempt:
         """Correlation of two tools' speeds; NaN with another number of tools."""
         if len(self.position) != 2:
             return float("nan")
-        first, second = (_smooth(speed_of(position, RATE)) for position in self.position.values())
+        moved = {**self.position, **(self.motion or {})}
+        first, second = (_smooth(speed_of(position, RATE)) for position in moved.values())
         return bimanual_correlation(first, second)
 
 
@@ -229,6 +281,26 @@ def _shaking(position: Array) -> Array:
     return np.asarray(sosfiltfilt(sections, position, axis=0))
 
 
+def _smoothness(motion: Array | None) -> dict[str, float]:
+    """What a spectrum tells of positions (n, 3) at `RATE`; NaN of none."""
+    if motion is None:
+        return dict.fromkeys(SPECTRAL, float("nan"))
+    speed = _smooth(speed_of(motion, RATE))
+    found = (
+        log_dimensionless_jerk(speed, RATE),
+        spectral_arc_length(speed, RATE),
+        motion_frequency(motion, RATE),
+        1e6 * tremor(_shaking(motion), RATE),
+    )
+    return dict(zip(SPECTRAL, found, strict=True))
+
+
+def _visited(position: Array, target: Array) -> NDArray[np.bool_]:
+    """(n,) whether positions (n, 3) are at a target (3,); see `Attempt`."""
+    beside, depth = np.linalg.norm(position[:, :2] - target[:2], axis=1) <= NEAR, position[:, 2]
+    return np.asarray(beside & (depth > 0.0 if target[2] > 0.0 else np.abs(depth - target[2]) <= NEAR))
+
+
 def read_attempt(path: Path, group: str = "") -> Attempt:
     """Read a record.
 
@@ -237,29 +309,60 @@ def read_attempt(path: Path, group: str = "") -> Attempt:
     InputError
         File, column or row, and what is allowed.
     """
-    table = _table(path)
+    table, notes = _of_task(_table(path))
     tools = {tool: table[table["tool"] == tool] for tool in sorted(set(table["tool"].astype(int)))}
     for tool, rows in tools.items():
-        _check_tool(path, tool, rows)
+        _check_tool(path, tool, rows, " while targets are shown" * bool(notes))
     start, end = float(table["time_s"].min()), float(table["time_s"].max())
     if not SHORTEST <= end - start <= LONGEST:
         raise InputError(f"{path}: time_s spans {end - start:.6g} s; allowed are {SHORTEST:g} s to {LONGEST:,.0f} s")
     time = start + np.arange(int((end - start) * RATE + 1e-9) + 1) / RATE
-    position, force = {}, {}
+    position, force, motion = {}, {}, {}
     for tool, rows in tools.items():
-        at = rows["time_s"].to_numpy()
-        columns = [np.interp(time, at, 1e-3 * rows[name].to_numpy()) for name in ("x_mm", "y_mm", "depth_mm")]
-        position[tool] = np.column_stack(columns)
+        at, place = rows["time_s"].to_numpy(), 1e-3 * rows[["x_mm", "y_mm", "depth_mm"]].to_numpy()
+        position[tool] = np.column_stack([np.interp(time, at, along) for along in place.T])
         force[tool] = np.interp(time, at, rows["force_N"].to_numpy())
+        apart = _apart(at, start, end)
+        if apart:
+            notes += (f"tool {tool}: rows are {apart} apart: no jerk, arc length, motion frequency and tremor",)
+        else:
+            motion[tool] = _between(at, place, time)
     target, wanted = _targets(table)
-    return Attempt(path.stem, group, time, position, force, target, wanted)
+    return Attempt(path.stem, group, time, position, force, target, wanted, motion, notes)
+
+
+def _apart(at: Array, start: float, end: float) -> str:
+    """How far apart rows at times (n,) are, where that is too far for `HIGHEST` from start to end (s); else nothing."""
+    gaps = np.sort(np.diff(at, prepend=start, append=end))
+    widest = float(gaps[-1])
+    if widest > HOLE * (1.0 + 1e-9):
+        return f"up to {widest:.3g} s"
+    mostly = float(gaps[np.searchsorted(np.cumsum(gaps), MOSTLY * (end - start))])
+    return f"{1e3 * mostly:.3g} ms" if mostly * ROWS * HIGHEST > 1.0 else ""
+
+
+def _between(at: Array, place: Array, time: Array) -> Array:
+    """(m, 3) at times (m,), by a spline through rows at times (n,) and places (n, 3)."""
+    if np.diff(at).min() < CLOSEST:
+        kept = [0]
+        while (ahead := int(np.searchsorted(at, at[kept[-1]] + CLOSEST))) < at.size:
+            kept.append(ahead)
+        at, place = at[kept], place[kept]
+    count = min(MIRRORED, at.size - 1)
+    mirrored = np.vstack([_mirrored(at[:, None], count).T, _mirrored(place, count).T])
+    return np.asarray(make_interp_spline(mirrored[0], mirrored[1:].T, DEGREE)(np.clip(time, at[0], at[-1])))
+
+
+def _mirrored(rows: Array, count: int) -> Array:
+    """Rows (n, d) with so many turned about the first before it, and about the last after it."""
+    return np.vstack([2.0 * rows[0] - rows[count:0:-1], rows, 2.0 * rows[-1] - rows[-2 : -count - 2 : -1]])
 
 
 def _table(path: Path) -> pd.DataFrame:
-    """The file's rows, its needed columns finite numbers, those of targets numbers or none."""
+    """The file's rows, its needed columns finite numbers, those of a target that is named too."""
     try:
         with open_regular(path, TABLE) as stream:
-            table = pd.read_csv(stream)
+            table = pd.read_csv(stream, dtype={"target": str})
     except (OSError, ValueError) as error:
         raise InputError(f"{path} cannot be read as a record: {' '.join(str(error).split())}") from None
     missing = [name for name in NEEDED if name not in table]
@@ -275,16 +378,52 @@ def _table(path: Path) -> pd.DataFrame:
     odd = np.flatnonzero(table["tool"] % 1.0)
     if odd.size:
         raise InputError(f"{path}: tool in row {odd[0] + 2} is no whole number")
-    for name in (*TARGET, "target_force_N"):
-        if name in table:
-            values = pd.to_numeric(table[name], errors="coerce").astype(np.float64)
-            table[name] = values.where(values.abs() <= LARGEST)
+    _check_targets(path, table)
     return table
 
 
-def _check_tool(path: Path, tool: int, rows: pd.DataFrame) -> None:
+def _check_targets(path: Path, table: pd.DataFrame) -> None:
+    """Names of targets as text, nothing where none is shown; their places and forces as numbers."""
+    missing = [name for name in TARGET if name not in table]
+    if len(missing) == len(TARGET):
+        return
+    if missing:
+        raise InputError(f"{path}: the column {missing[0]} is missing; a record of a task has {', '.join(TARGET)}")
+    name = table["target"].str.strip()
+    table["target"] = name = name.where(name != "")
+    for column in (*TARGET[1:], "target_force_N"):
+        if column not in table:
+            continue
+        needed = name.notna() & (table[column].notna() | (column in TARGET))
+        table[column] = values = pd.to_numeric(table[column], errors="coerce").astype(np.float64)
+        wrong = np.flatnonzero(needed & ~(values.abs() <= LARGEST))
+        if wrong.size:
+            raise InputError(
+                f"{path}: {column} in row {wrong[0] + 2} is no number up to {LARGEST:g}, and target "
+                f"{name.iloc[wrong[0]]!r} is shown"
+            )
+
+
+def _of_task(table: pd.DataFrame) -> tuple[pd.DataFrame, tuple[str, ...]]:
+    """Rows from the first to the last that shows a target, and what was left out; of a record without targets all."""
+    time = table["time_s"]
+    shown = time[table["target"].notna()] if "target" in table else time[:0]
+    if shown.empty:
+        return table, ()
+    kept = table[time.between(shown.min(), shown.max())]
+    sides = (
+        ("before the first", int((time < shown.min()).sum()), shown.min() - time.min()),
+        ("after the last", int((time > shown.max()).sum()), time.max() - shown.max()),
+    )
+    left = [f"{counted(rows, 'row')} ({long:.3g} s) {side} target left out" for side, rows, long in sides if rows]
+    return kept, tuple(left)
+
+
+def _check_tool(path: Path, tool: int, rows: pd.DataFrame, when: str) -> None:
     if len(rows) < FEWEST_ROWS:
-        raise InputError(f"{path}: tool {tool} has {len(rows)} rows; at least {FEWEST_ROWS} are needed")
+        raise InputError(
+            f"{path}: tool {tool} has {counted(len(rows), 'row')}{when}; at least {FEWEST_ROWS} are needed"
+        )
     back = np.flatnonzero(np.diff(rows["time_s"].to_numpy()) <= 0.0)
     if back.size:
         raise InputError(f"{path}: time_s of tool {tool} does not rise at its row {back[0] + 2}")
@@ -292,9 +431,9 @@ def _check_tool(path: Path, tool: int, rows: pd.DataFrame) -> None:
 
 def _targets(table: pd.DataFrame) -> tuple[Array, Array]:
     """(k, 3) targets in the order in which they were shown, m, and (k,) their forces."""
-    if any(name not in table for name in TARGET):
+    if "target" not in table:
         return np.empty((0, 3)), np.empty(0)
-    shown = table.dropna(subset=list(TARGET)).drop_duplicates("target")
+    shown = table.dropna(subset=["target"]).drop_duplicates("target")
     place = 1e-3 * shown[list(TARGET[1:])].to_numpy(dtype=np.float64)
     if "target_force_N" not in shown:
         return place, np.full(len(shown), np.nan)

@@ -1,7 +1,11 @@
-"""Attempts in a table, and two groups of them compared: expert against novice, measure by measure, with power."""
+"""Attempts in a table, and two groups of them compared: expert against novice, measure by measure, with power.
+
+An attempt that left targets out was a shorter task: it is not in the comparison of time, path and economy of motion.
+"""
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,6 +28,7 @@ READ = {
     "time_s": ("time", "s", -1),
     "path_length_mm": ("path length", "mm", -1),
     "economy_of_motion": ("economy of motion", "", 1),
+    "targets_reached": ("targets reached", "", 1),
     "log_dimensionless_jerk": ("log dimensionless jerk", "", 1),
     "spectral_arc_length": ("spectral arc length", "", 1),
     "motion_frequency_hz": ("95 % motion frequency", "Hz", -1),
@@ -33,6 +38,8 @@ READ = {
     "bimanual_correlation": ("bimanual correlation", "", 1),
 }
 """Each measure in words, its unit, and whether more (1) or less (-1) of it is the better attempt by its source."""
+OF_THE_WHOLE = ("time_s", "path_length_mm", "economy_of_motion")
+"""Measures that attempts are compared by only where they came to every target."""
 
 
 @dataclass(frozen=True)
@@ -84,13 +91,16 @@ class Assessment:
             "attempt": [one.name for one in self.attempts],
             "group": [one.group for one in self.attempts],
         }
-        return out | {name: [row[name] for row in self.measures] for name in self.measures[0]}
+        out |= {name: [row[name] for row in self.measures] for name in self.measures[0]}
+        return out | {"warnings": ["; ".join(one.warnings) for one in self.attempts]}
 
     def tests_columns(self) -> dict[str, list[Any]]:
         """`skill.csv`: a row a measure."""
         names = ["first group", "second group"] if len(self.groups) != 2 else list(self.groups)
         return {
             "measure": [one.measure for one in self.tests],
+            f"{names[0]}_n": [one.test.fem.observations for one in self.tests],
+            f"{names[1]}_n": [one.test.wave.observations for one in self.tests],
             f"{names[0]}_mean": [one.test.fem.mean for one in self.tests],
             f"{names[1]}_mean": [one.test.wave.mean for one in self.tests],
             "difference": [one.test.difference for one in self.tests],
@@ -105,18 +115,45 @@ class Assessment:
 
     @property
     def headline(self) -> str:
-        """What was found, in one sentence."""
-        count = counted(len(self.attempts), "attempt")
+        """What was found, and what it leaves out."""
+        return " ".join([f"{counted(len(self.attempts), 'attempt')}{self._found}", *self._left_out, *self._warned])
+
+    @property
+    def _found(self) -> str:
         if not self.tests:
-            return f"{count} measured; groups are compared where two folders with two attempts each are given."
+            return " measured; groups are compared where two folders with two attempts each are given."
         found = [one for one in self.tests if one.differs]
         if not found:
-            return f"{count}: no measure tells {' from '.join(self.groups)}, which does not show that they are alike."
+            return f": no measure tells {' from '.join(self.groups)}, which does not show that they are alike."
         number = f"{len(found)} of {len(self.tests)} measures tell{'s' * (len(found) == 1)}"
         better = [(one.better(self.groups), READ[one.measure][0]) for one in found]
         told = [(group, [words for side, words in better if side == group]) for group in self.groups]
         sides = [f"{group} does better in {', '.join(names)}" for group, names in told if names]
-        return f"{count}: {number} {' from '.join(self.groups)}; {'; '.join(sides)}."
+        return f": {number} {' from '.join(self.groups)}; {'; '.join(sides)}."
+
+    @property
+    def _left_out(self) -> list[str]:
+        """Of two groups, which attempts left targets out and what they are not compared by."""
+        each = [
+            [row["targets_reached"] for one, row in zip(self.attempts, self.measures, strict=True) if one.group == name]
+            for name in self.groups
+        ]
+        if len(each) != 2 or not any(share < 1.0 for shares in each for share in shares):
+            return []
+        sides = [
+            f"{name} left targets out in {sum(share < 1.0 for share in shares)} of {counted(len(shares), 'attempt')} "
+            f"(reached {100.0 * float(np.nanmean(shares)):.3g} %)"
+            for name, shares in zip(self.groups, each, strict=True)
+            if np.isfinite(shares).any()
+        ]
+        return [f"{'; '.join(sides)}: time, path length and economy of motion are compared without those."]
+
+    @property
+    def _warned(self) -> list[str]:
+        warned = [one.warnings for one in self.attempts if one.warnings]
+        if len(self.attempts) == 1:
+            return [f"Warning: {'; '.join(told)}." for told in warned]
+        return [f"Warnings of {counted(len(warned), 'attempt')} stand in attempts.csv."] * bool(warned)
 
 
 def assess(records: Sequence[Path]) -> Assessment:
@@ -125,43 +162,74 @@ def assess(records: Sequence[Path]) -> Assessment:
     Parameters
     ----------
     records
-        CSV files, or folders of them: a folder is a group, named like it.
+        CSV files, or folders of them: a folder is a group, named like it, with as much of its path as tells it from
+        the others.
 
     Raises
     ------
     InputError
-        A record that cannot be read, or none.
+        A record that cannot be read or that is given twice, or none.
     """
-    attempts = tuple(attempt for path in records for attempt in _attempts(path))
+    names = _group_names([path for path in records if path.is_dir()])
+    files = [(file, names.get(path.resolve(), "")) for path in records for file in _files(path)]
+    seen: set[Path] = set()
+    for file, _ in files:
+        if file.resolve() in seen:
+            raise InputError(f"{file} is given twice; give each record once, alone or in its folder")
+        seen.add(file.resolve())
+    attempts = tuple(read_attempt(file, group) for file, group in files)
     measures = tuple(attempt.measures() for attempt in attempts)
     groups = tuple(dict.fromkeys(attempt.group for attempt in attempts if attempt.group))
     return Assessment(attempts, measures, groups, _tests(attempts, measures, groups))
 
 
-def _attempts(path: Path) -> list[Attempt]:
+def _group_names(folders: Sequence[Path]) -> dict[Path, str]:
+    """The end of each folder's path that no other has, as short as that may be."""
+    whole = [folder.resolve() for folder in folders]
+    twice = next((folder for at, folder in enumerate(whole) if folder in whole[:at]), None)
+    if twice is not None:
+        raise InputError(f"{twice} is given twice; give each folder once")
+    names = {}
+    for folder in whole:
+        count, parts = 1, folder.parts
+        while sum(other.parts[-count:] == parts[-count:] for other in whole) > 1:
+            count += 1
+        names[folder] = str(Path(*parts[-count:]))
+    return names
+
+
+def _files(path: Path) -> list[Path]:
     if not path.is_dir():
-        return [read_attempt(path)]
+        return [path]
     files = sorted(path.glob("*.csv"))
     if not files:
         raise InputError(f"{path} has no record in it; give CSV files, or folders of them")
-    return [read_attempt(file, path.resolve().name) for file in files]
+    return files
 
 
 def _tests(
     attempts: Sequence[Attempt], measures: Sequence[dict[str, float]], groups: tuple[str, ...]
 ) -> tuple[MeasureTest, ...]:
-    """A test for each measure that both groups have often enough."""
+    """A test for each measure that both groups have often enough; see `OF_THE_WHOLE`."""
     if len(groups) != 2:
         return ()
     found: list[tuple[str, TwoSampleT, tuple[int, int]]] = []
     for name in measures[0]:
         values = [
-            np.array([row[name] for one, row in zip(attempts, measures, strict=True) if one.group == group])
+            np.array(
+                [
+                    row[name]
+                    for one, row in zip(attempts, measures, strict=True)
+                    if one.group == group and not (name in OF_THE_WHOLE and row["targets_reached"] < 1.0)
+                ]
+            )
             for group in groups
         ]
         first, second = (each[np.isfinite(each)] for each in values)
         if min(first.size, second.size) >= FEWEST:
-            test = group_t_test(first, second)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", RuntimeWarning)  # a group whose every attempt reached all targets
+                test = group_t_test(first, second)
             if np.isfinite(test.p_value):
                 found.append((name, test, (first.size, second.size)))
     if not found:
@@ -202,7 +270,9 @@ def summary(found: Assessment) -> dict[str, Any]:
         "schema": 1,
         "headline": found.headline,
         "groups": list(found.groups),
-        "attempts": [{"attempt": one.name, "group": one.group, **row} for one, row in rows],
+        "attempts": [
+            {"attempt": one.name, "group": one.group, **row, "warnings": list(one.warnings)} for one, row in rows
+        ],
         "tests": [dict(zip(table, row, strict=True)) for row in zip(*table.values(), strict=True)],
     }
 
@@ -227,7 +297,9 @@ def _page(found: Assessment) -> Page:
 def _attempts_table(found: Assessment) -> Table:
     """What each attempt measured, without the measures that none has."""
     every = found.columns()
-    columns = {name: every[name] for name in every if name not in READ or np.isfinite(every[name]).any()}
+    columns = {name: each for name, each in every.items() if name not in READ or np.isfinite(each).any()}
+    if not any(columns["warnings"]):
+        del columns["warnings"]
     heads = [Column(*READ.get(name, (name, ""))[:2], digits=3) for name in columns]
     rows = list(zip(*columns.values(), strict=True))
     return Table("What each attempt measured", heads, rows, Download("attempts.csv"))

@@ -210,7 +210,7 @@
   }
 
   function asked(task) {
-    if (task.done) return `Done in ${(task.end - task.start).toFixed(1)} s. Save the record and run: tissuebench assess press-record.csv`;
+    if (task.done) return `Done in ${(task.end - task.start).toFixed(1)} s, where its record ends. Save it and run: tissuebench assess press-record.csv`;
     const [{ depth }] = task.current, what = task.together > 1 ? "both green targets" : "the green target";
     return `Press ${what} to ${mm(depth).toFixed(2)} mm (${task.at + 1} of ${task.targets.length}); wheel, D and U change the depth.`;
   }

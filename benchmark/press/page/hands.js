@@ -9,7 +9,7 @@ const Hands = (() => {
     constructor(tissues, lead) {
       this.tissues = tissues; this.lead = lead; this.time = 0;
       this.hands = Array.from({ length: MOST }, () => ({ on: false, who: 0, x: 0, y: 0, goal: 0, at: 0, stay: false }));
-      this.record = []; this.refused = ""; this.task = null; this.hover = null;
+      this.record = []; this.whole = null; this.refused = ""; this.task = null; this.hover = null;
     }
 
     get shown() { return this.tissues[this.lead]; }
@@ -81,6 +81,7 @@ const Hands = (() => {
         this.task.look(tools, this.time);
       }
       this.record.push(frame);
+      if (this.task?.done) this.whole ??= this.record.slice();
       while (this.record.length && this.record[0].time < this.time - KEPT) this.record.shift();
     }
 
@@ -97,10 +98,10 @@ const Hands = (() => {
       return { begin, rested, rows: kept.map((frame) => [frame.time - begin, row(frame)[3]]), alone: kept.every((frame) => frame.rows.length === 1) };
     }
 
-    // The record as the lines of a CSV file; of a task with the target that was shown.
+    // The record as the lines of a CSV file; of a task with the target that was shown, and ending with it.
     csv() {
       const lines = ["time_s,tool,x_mm,y_mm,depth_mm,force_N,target,target_x_mm,target_y_mm,target_depth_mm"];
-      for (const { time, rows, air, targets } of this.record) {
+      for (const { time, rows, air, targets } of this.whole ?? this.record) {
         for (const [, x, y, depth, force, who] of air ? [air] : rows) {
           const target = targets?.[Math.min(who, targets.length - 1)];
           const aim = target ? [target.number, ...[target.x, target.y, target.depth].map((part) => (1e3 * part).toFixed(3))] : ["", "", "", ""];

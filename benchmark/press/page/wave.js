@@ -2,7 +2,7 @@
 // The wave model under interactive tools: what wavemodel.control computes, in plain JavaScript, from tables made by it.
 // SI units; depths, deflections and forces are positive into the tissue. Nothing here draws or listens.
 const Wave = (() => {
-  const SWEEPS = 200, CLOSE = 1e-12, GONE = 1e-9;
+  const SWEEPS = 200, CLOSE = 1e-12, GONE = 1e-9, ROUNDING = 1e-9;
 
   const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)).buffer;
   const singles = (text) => new Float32Array(bytesOf(text));
@@ -256,7 +256,7 @@ const Wave = (() => {
       if (!(x >= 0 && x <= width && y >= 0 && y <= height)) return "outside the tissue";
       if (!(depth >= 0 && depth <= this.body.deepest)) return "deeper than the model goes";
       const near = this.tools.some((other, index) => index !== contact && other.phase === "pressed"
-        && Math.hypot(x - other.x, y - other.y) < 2 * this.body.toolRadius);
+        && Math.hypot(x - other.x, y - other.y) < 2 * this.body.toolRadius * (1 - ROUNDING));
       if (near) return "closer than two tool radii to the other tool";
       const tool = this.tools[contact];
       if (tool.phase === "returning" && Math.hypot(x - tool.x, y - tool.y) > this.body.toolRadius) this._forget(contact, tool);

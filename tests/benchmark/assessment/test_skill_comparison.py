@@ -21,10 +21,11 @@ def reach(start, end, seconds):
     return start + (end - start) * (10.0 * share**3 - 15.0 * share**4 + 6.0 * share**5)
 
 
-def write_attempt(path, rng, shake, astray, tools=(0,)):
-    """An attempt at the targets: in the air to each, down to its depth, up again."""
+def write_attempt(path, rng, shake, astray, tools=(0,), *, last=3, names=(0, 1, 2)):
+    """An attempt at the targets: in the air to each, down to its depth, up again; it goes on to so many of them."""
     pieces, here, shown = [], np.array([0.0, 0.0, 0.0]), []
-    for number, target in enumerate(TARGETS):
+    for number in range(len(TARGETS)):
+        target = TARGETS[min(number, last - 1)]
         above = target * [1.0, 1.0, 0.0]
         wrong = target + np.array([0.0, 0.0, astray * rng.normal()])
         for goal, seconds in ((above, 1.0 + shake * rng.uniform()), (wrong, 0.5), (above, 0.5)):
@@ -36,7 +37,7 @@ def write_attempt(path, rng, shake, astray, tools=(0,)):
     position = position + shake * np.sin(2.0 * np.pi * 9.0 * time)[:, None] * [0.3, 0.2, 0.0]
     position[:, 2] = np.maximum(position[:, 2], 0.0)
     columns = {"time_s": time, "x_mm": position[:, 0], "y_mm": position[:, 1], "depth_mm": position[:, 2]}
-    columns |= {"force_N": 1.3 * position[:, 2], "target": shown}
+    columns |= {"force_N": 1.3 * position[:, 2], "target": [names[number] for number in shown]}
     columns |= {
         name: TARGETS[shown, axis] for axis, name in enumerate(("target_x_mm", "target_y_mm", "target_depth_mm"))
     }
@@ -92,6 +93,82 @@ def test_the_better_group_is_named_by_what_the_measure_means(groups):
         assert tests[measure].better(("novice", "expert")) == "expert"
 
 
+def test_those_that_leave_targets_out_do_not_do_better_for_it(tmp_path):
+    """Five that press all three targets, and five of which four stop after the first."""
+    rng = np.random.default_rng(3)
+    for group in ("thorough", "hasty"):
+        (tmp_path / group).mkdir()
+        for number in range(5):
+            last = 1 if group == "hasty" and number else 3
+            write_attempt(tmp_path / group / f"{number}.csv", rng, 0.2 + 0.1 * rng.uniform(), 0.02, last=last)
+    found = assess([tmp_path / "thorough", tmp_path / "hasty"])
+    tests = {one.measure: one.test for one in found.tests}
+    assert {"tremor_um", "targets_reached"} <= set(tests)
+    assert not {"time_s", "path_length_mm", "economy_of_motion"} & set(tests)
+    assert "hasty left targets out in 4 of 5 attempts (reached 46.7 %)" in found.headline
+    assert "thorough left targets out in 0 of 5 attempts (reached 100 %)" in found.headline
+    assert "time, path length and economy of motion are compared without those" in found.headline
+    assert ["not pressed" in text for text in found.columns()["warnings"]] == [False] * 6 + [True] * 4
+    one = tmp_path / "hasty" / "5.csv"
+    write_attempt(one, rng, 0.2, 0.02)
+    again = assess([tmp_path / "thorough", tmp_path / "hasty"])
+    assert {one.measure: one.test for one in again.tests}["time_s"].wave.observations == 2
+
+
+def test_groups_of_one_name_stay_two(groups, tmp_path):
+    for group in ("expert", "novice"):
+        (tmp_path / group / "records").mkdir(parents=True)
+        for file in (groups / group).iterdir():
+            (tmp_path / group / "records" / file.name).write_bytes(file.read_bytes())
+    found = assess([tmp_path / "expert" / "records", tmp_path / "novice" / "records"])
+    assert found.groups == ("expert/records", "novice/records")
+    assert len(found.tests) > 5
+    mixed = assess([groups / "expert", tmp_path / "expert" / "records"])
+    assert mixed.groups == ("expert", "records")
+
+
+@pytest.mark.parametrize("twice", [("expert", "expert"), ("expert", "novice/../expert"), ("expert", "expert/0.csv")])
+def test_what_is_given_twice_is_refused(groups, twice, capsys):
+    code = main(["assess", *(str(groups / one) for one in twice)])
+    said = capsys.readouterr()
+    assert code == 2
+    assert said.err.count("is given twice") == 1
+
+
+def test_a_record_ends_with_its_task(tmp_path):
+    """What the tool does before the first and after the last target is shown changes no measure."""
+    rng, task = np.random.default_rng(1), tmp_path / "task.csv"
+    write_attempt(task, rng, 0.1, 0.02)
+    head, *rows = task.read_text().splitlines()
+    names = head.split(",")
+    idle = [row.split(",") for row in rows[:300]]
+    for at, row in enumerate(idle):
+        row[names.index("time_s")] = f"{0.01 * (at - 300):.6g}"
+        row[names.index("target") : names.index("target") + 4] = [""] * 4
+    late = [list(row) for row in idle]
+    for at, row in enumerate(late):
+        row[names.index("time_s")] = f"{0.01 * (len(rows) + at):.6g}"
+    whole = tmp_path / "whole.csv"
+    whole.write_text("\n".join([head, *map(",".join, idle), *rows, *map(",".join, late)]) + "\n")
+    expected, found = read_attempt(task), read_attempt(whole)
+    assert found.measures() == pytest.approx(expected.measures(), nan_ok=True, rel=1e-9)
+    assert found.warnings == (
+        "300 rows (3 s) before the first target left out",
+        "300 rows (3 s) after the last target left out",
+    )
+    assert "Warning: 300 rows (3 s) before" in assess([whole]).headline
+
+
+def test_targets_may_have_names(tmp_path):
+    numbered, named = tmp_path / "numbered.csv", tmp_path / "named.csv"
+    write_attempt(numbered, np.random.default_rng(1), 0.1, 0.02)
+    write_attempt(named, np.random.default_rng(1), 0.1, 0.02, names=("A", "next one", "B2"))
+    found = read_attempt(named)
+    np.testing.assert_array_equal(found.target, read_attempt(numbered).target)
+    assert found.measures()["targets_reached"] == 1.0
+    assert np.isfinite(found.measures()["economy_of_motion"])
+
+
 def test_one_group_in_two_halves_is_not_told_apart_nor_called_alike(groups, tmp_path):
     for number in range(6):
         half = tmp_path / ("odd" if number % 2 else "even")
@@ -119,6 +196,7 @@ def test_the_command_writes_tables_and_a_page(groups, tmp_path, capsys):
 
 
 HEAD = "time_s,tool,x_mm,y_mm,depth_mm,force_N\n"
+TASK = HEAD.strip() + ",target,target_x_mm,target_y_mm,target_depth_mm\n"
 
 
 @pytest.mark.parametrize(
@@ -132,6 +210,17 @@ HEAD = "time_s,tool,x_mm,y_mm,depth_mm,force_N\n"
         (HEAD + "0,0,1e308,1,0,0\n", "x_mm in row 2"),
         (HEAD + "".join(f"{0.001 * k},0,1,1,0,0\n" for k in range(30)), "time_s spans 0.029 s"),
         (HEAD + "".join(f"{1e6 * k},0,1,1,0,0\n" for k in range(30)), "time_s spans 2.9e.07 s"),
+        (
+            TASK + "0,0,1,1,0,0,A,1,2,deep\n",
+            "target_depth_mm in row 2 is no number up to 1e.09, and target 'A' is shown",
+        ),
+        (TASK + "0,0,1,1,0,0,,,,\n0,0,1,1,0,0,4,1,,1\n", "target_y_mm in row 3 is no number"),
+        (HEAD.strip() + ",target,target_x_mm,target_y_mm\n0,0,1,1,0,0,A,1,1\n", "target_depth_mm is missing"),
+        (TASK.strip() + ",target_force_N\n0,0,1,1,0,0,A,1,2,1,strong\n", "target_force_N in row 2 is no number"),
+        (
+            TASK + "".join(f"{0.1 * k},0,1,1,0,0,{'1,1,1,1' if k < 9 else ',,,'}\n" for k in range(30)),
+            "tool 0 has 9 rows while targets are shown; at least 20",
+        ),
     ],
 )
 def test_a_record_that_cannot_be_used_is_refused(tmp_path, text, word):

@@ -1,7 +1,8 @@
-// Reads {body, memory, grid, kind, dt, wait} from standard input, does a task with one mouse, and writes how it went.
+// Reads {body, memory, grid, kind, dt, wait, after} from standard input, does a task with one mouse, which then rests over
+// the tissue for a while, and writes how it went.
 "use strict";
 const [Wave, Hands] = process.argv.slice(2).map((path) => require(path));
-const { body, memory, grid, kind, dt, wait } = JSON.parse(require("fs").readFileSync(0, "utf8"));
+const { body, memory, grid, kind, dt, wait, after = 0 } = JSON.parse(require("fs").readFileSync(0, "utf8"));
 const tissue = new Wave.InteractiveTissue(new Wave.RadialBody(body), Wave.grid(...grid), Hands.MOST, memory);
 const bench = new Hands.Bench({ wave: tissue }, "wave");
 bench.task = new Hands.Task(kind, grid[0], tissue.body.deepest);
@@ -16,5 +17,7 @@ while (!bench.task.done && bench.time < 60) {
   }
   bench.step(dt, "depth", 5e-3);
 }
-const { done, start, end } = bench.task;
-process.stdout.write(JSON.stringify({ done, seconds: end - start, refused, csv: bench.csv(), again: bench.history(0, 60).rested }));
+const { done, start, end } = bench.task, again = bench.history(0, 60).rested;
+if (after) { bench.lift(k); bench.hover = [0.045, 0.045]; }
+for (const last = bench.time; bench.time < last + after;) bench.step(dt, "depth", 5e-3);
+process.stdout.write(JSON.stringify({ done, seconds: end - start, refused, csv: bench.csv(), again }));

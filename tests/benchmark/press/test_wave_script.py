@@ -131,6 +131,18 @@ def test_a_tool_that_cannot_be_there_is_refused(wave):
     ] == [True] * 3
 
 
+def test_tools_side_by_side_may_touch_whatever_their_places_round_to(wave):
+    body = layered_body(wave(), Grid(*GRID))
+    width = 2.0 * body.tool_radius
+    at = np.nextafter(20e-3 + width, 0.0)
+    assert at - 20e-3 < width
+    touches = [[0, 20e-3, 20e-3, 1e-3], [1, at, 20e-3, 1e-3], [2, 20e-3, 20e-3 + width * (1.0 - 1e-6), 1e-3]]
+    run = {"body": "a", "grid": GRID, "memory": {}, "frames": [{"dt": 0.01, "touch": touches}]}
+    [[answer]] = by_node({"a": table_of_body(body, 3e-3).to_dict()}, [run])
+    assert answer["refused"][:2] == [None, None]
+    assert "closer" in answer["refused"][2]
+
+
 @pytest.mark.parametrize(
     ("variant", "name", "depth"), [("as_printed", "printed", 1e-3), ("corrected", "corrected", 4e-3)]
 )
@@ -145,17 +157,31 @@ def test_the_published_membrane_is_the_library_s(variant, name, depth):
             np.testing.assert_allclose(np.reshape(answer["faces"], faces.shape), faces, rtol=0.0, atol=1e-9)
 
 
+def six_presses(wave, **options):
+    """How six presses with one mouse went."""
+    body = table_of_body(layered_body(wave(), Grid(*GRID)), 3e-3).to_dict()
+    question = {"body": body, "grid": [49e-3, 49e-3, 1e-3], "kind": "touch", "dt": 1 / 60, "wait": 0.2, "memory": {}}
+    done = subprocess.run(
+        [NODE, HERE / "hands_follow.js", SCRIPT, SCRIPT.with_name("hands.js")],
+        input=json.dumps(question | options), capture_output=True, text=True, check=True, timeout=60,
+    )  # fmt: skip
+    return json.loads(done.stdout)
+
+
+def test_the_record_of_a_task_ends_with_it(wave):
+    """However long after it is saved: at once, after a while, and after what else is kept is forgotten."""
+    saved, *later = (six_presses(wave, after=seconds) for seconds in (0.0, 20.0, 650.0))
+    assert saved["csv"].splitlines()[-1].split(",")[6] == "5"
+    for answer in later:
+        assert answer["csv"] == saved["csv"]
+
+
 def test_one_mouse_is_one_hand_on_a_tissue_that_is_slow_to_return(wave, tmp_path):
     """Six presses with a memory that outlasts them all take as long as without, and the record has one tool."""
-    body = table_of_body(layered_body(wave(), Grid(*GRID)), 3e-3).to_dict()
-    question = {"body": body, "grid": [49e-3, 49e-3, 1e-3], "kind": "touch", "dt": 1 / 60, "wait": 0.2}
-    answers = []
-    for memory in ({}, {"strength": [0.3], "time_s": [700.0], "retardation_s": 0.0}):
-        done = subprocess.run(
-            [NODE, HERE / "hands_follow.js", SCRIPT, SCRIPT.with_name("hands.js")],
-            input=json.dumps({**question, "memory": memory}), capture_output=True, text=True, check=True, timeout=60,
-        )  # fmt: skip
-        answers.append(json.loads(done.stdout))
+    answers = [
+        six_presses(wave, memory=memory)
+        for memory in ({}, {"strength": [0.3], "time_s": [700.0], "retardation_s": 0.0})
+    ]
     for answer in answers:
         (tmp_path / "record.csv").write_text(answer["csv"])
         attempt = read_attempt(tmp_path / "record.csv")
