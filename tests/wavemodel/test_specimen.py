@@ -29,6 +29,9 @@ def test_refuses_layers_that_cannot_be(values, message):
 def test_refuses_tools_that_cannot_be():
     with pytest.raises(WaveError, match="tool radius = 0 m"):
         DiscTool(0.0)
+    with pytest.raises(WaveError, match="tool radius = 1e-09 m is not allowed: at least 1e-06 m"):
+        DiscTool(1e-9)
+    assert DiscTool(1e-6).radius == 1e-6
     with pytest.raises(WaveError, match=r"'glued'.*rigid_bonded"):
         DiscTool(1e-3, "glued")
 

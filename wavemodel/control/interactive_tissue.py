@@ -15,6 +15,8 @@ SWEEPS, CLOSE = 200, 1e-12
 """For tools that feel each other."""
 GONE = 1e-9
 """Of the elastic force at release: what is less is at rest."""
+ROUNDING = 1e-9
+"""Of two tool radii: what two tools may seem closer than that by the rounding of their places."""
 
 
 @dataclass(frozen=True)
@@ -243,9 +245,10 @@ class InteractiveTissue:
             )
         if not 0.0 <= depth <= self.body.deepest:
             raise WaveError(f"depth = {depth * 1e3:g} mm is not allowed: 0 to {self.body.deepest * 1e3:.4g} mm")
+        touching = 2.0 * self.body.tool_radius * (1.0 - ROUNDING)
         for index, other in enumerate(self._contacts):
             apart = float(np.hypot(x - other.x, y - other.y))
-            if index != contact and other.phase == "pressed" and apart < 2.0 * self.body.tool_radius:
+            if index != contact and other.phase == "pressed" and apart < touching:
                 raise WaveError(
                     f"contact = {contact} is not allowed {apart * 1e3:g} mm from tool {index}: at least two tool "
                     f"radii, {2e3 * self.body.tool_radius:g} mm, apart"

@@ -232,6 +232,17 @@ def test_bad_input_is_one_error_and_changes_nothing(tissue, snapshot, request_, 
         np.testing.assert_array_equal(ours, theirs)
 
 
+def test_tools_side_by_side_may_touch_whatever_their_places_round_to(tissue):
+    tool = tissue()
+    radius = tool.body.tool_radius
+    apart = np.nextafter(30e-3 + 2.0 * radius, 0.0)
+    assert apart - 30e-3 < 2.0 * radius
+    tool.touch(0, 30e-3, 30e-3, DEPTH)
+    tool.touch(1, apart, 30e-3, DEPTH)
+    with pytest.raises(WaveError, match="two tool radii"):
+        tool.touch(2, 30e-3, 30e-3 + 2.0 * radius * (1.0 - 1e-6), DEPTH)
+
+
 @pytest.mark.parametrize(("options", "word"), [({"contacts": 0}, "contacts"), ({"retardation": -1.0}, "retardation")])
 def test_unusable_options_are_refused(tissue, options, word):
     with pytest.raises(WaveError, match=word):
