@@ -12,10 +12,13 @@ import numpy as np
 from scipy.special import j0
 
 from wavemodel.arrays import BoolArray, FloatArray
+from wavemodel.errors import WaveError
 
 NODES_PER_PANEL = 8
 PHASE_PER_PANEL = 8.0
 """Radians that the integrand may turn within a panel of eight Gauss points (error near 1e-7)."""
+MOST_NODES = 400_000
+"""Wavenumbers: about 1 GB for two layers, a tool of 1/4000 of the stack's height."""
 
 
 class Tables(Protocol):
@@ -119,7 +122,18 @@ class Endless:
 
 
 def endless(limit: float, reach: float) -> Endless:
-    """Quadrature up to wavenumber `limit` (rad/m), good for distances up to `reach` (m)."""
+    """Quadrature up to wavenumber `limit` (rad/m), good for distances up to `reach` (m).
+
+    Raises
+    ------
+    WaveError
+        If it takes more than `MOST_NODES`: the tool is too fine beside the stack or the window.
+    """
+    if not limit * reach * NODES_PER_PANEL / PHASE_PER_PANEL <= MOST_NODES:
+        raise WaveError(
+            f"a tool so fine beside its stack or window takes {limit * reach * NODES_PER_PANEL / PHASE_PER_PANEL:.3g} "
+            f"wavenumbers, which is not allowed: at most {MOST_NODES}; a wider tool or thinner layers take fewer"
+        )
     panels = max(8, int(np.ceil(limit * reach / PHASE_PER_PANEL)))
     point, share = np.polynomial.legendre.leggauss(NODES_PER_PANEL)
     width = limit / panels

@@ -228,6 +228,21 @@ def _spread(values: Array) -> float:
     return float(np.std(values, ddof=1)) if values.size > 1 else 0.0
 
 
+def _gain_spread(problem: TrialsProblem, gain: Array) -> float:
+    """Standard deviation of log gains (R,) on one specimen under one tool, give or take what is told of the tools.
+
+    Between tools a ratio of stiffness is no scatter of trials: a machine that gives way makes one.
+    """
+    setups = [problem.study.conditions[trial.condition].setup for trial in problem.trials]
+    kinds = list(dict.fromkeys(setups))
+    freedom = len(setups) - len(kinds)
+    if len(kinds) < 2 or freedom < len(kinds) or len({tissue for tissue, *_ in kinds}) > 1:
+        return _spread(gain)
+    groups = np.array([kinds.index(setup) for setup in setups])
+    left = gain - np.array([gain[groups == group].mean() for group in groups])
+    return float(np.hypot(np.sqrt(left @ left / freedom), criteria.TOOLS_APART))
+
+
 def _size(values: Array) -> float:
     """Root mean square: what all trials share, such as a late sensor, is no less likely than what they do not."""
     return float(np.sqrt(np.mean(values**2)))
@@ -251,7 +266,7 @@ def _spreads(fitted: Fit, scale: Array) -> TrialPrior:
     deepest = max(condition.around.peak_depth for condition in fitted.model.problem.study.conditions)
     floor = float(np.median(scale[:, 1:])) if scale.shape[1] > 1 else 1.0
     return TrialPrior(
-        gain=max(_spread(state[:, 0]), 3e-3),
+        gain=max(_gain_spread(fitted.model.problem, state[:, 0]), 3e-3),
         zero=max(_size(state[:, 1]), 0.2 * noise, 1e-9),
         shift=max(_size(state[:, 2]), 0.05 * fitted.model.problem.study.raw_interval, 1e-4),
         height=max(_early(state[:, 3]), criteria.LEAST_HEIGHT * deepest),

@@ -1,11 +1,13 @@
 """What differs from trial to trial is found and taken off: the noise that is left is the sensor's."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from benchmark.discovery.base.calibration import _spreads, calibrate
+from benchmark.discovery import criteria
+from benchmark.discovery.base.calibration import _gain_spread, _spreads, calibrate
 from benchmark.discovery.base.trials_problem import OWN
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.files import load_session
@@ -53,3 +55,21 @@ def test_a_trial_that_was_not_filmed_counts_with_its_force_alone():
     assert np.isfinite(found.problem.noise.scale).all()
     assert [not trial.count[:, 1:].any() for trial in found.problem.trials] == unfilmed
     assert np.isfinite(found.base.vector).all()
+
+
+def parted(setups, gain):
+    """A problem with a trial for each set-up (tissue, tool, support), and their log gains."""
+    conditions = tuple(SimpleNamespace(setup=setup) for setup in setups)
+    trials = tuple(SimpleNamespace(condition=k) for k in range(len(setups)))
+    return SimpleNamespace(study=SimpleNamespace(conditions=conditions), trials=trials), np.asarray(gain)
+
+
+def test_what_two_tools_part_is_no_scatter_of_trials():
+    narrow, wide, other = ("gel", "5 mm", "base"), ("gel", "8 mm", "base"), ("skin", "8 mm", "base")
+    gains = [0.05, 0.04, 0.06, -0.05, -0.06, -0.04]
+    two = _gain_spread(*parted([narrow] * 3 + [wide] * 3, gains))
+    assert two == pytest.approx(np.hypot(0.01, criteria.TOOLS_APART))
+    for setups in ([narrow] * 6, [narrow] * 3 + [other] * 3, [narrow, wide, narrow, wide, wide, other]):
+        assert _gain_spread(*parted(setups, gains)) == pytest.approx(np.std(gains, ddof=1))
+    single = parted([narrow, wide], [0.05, -0.05])  # no trial has a mate
+    assert _gain_spread(*single) == pytest.approx(np.std([0.05, -0.05], ddof=1))
