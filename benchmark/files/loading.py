@@ -179,11 +179,23 @@ def _scenario_path(key: str, tissue: Any) -> KeyPath:
     """Where a `--set` key points in a scenario; paths into its tissue begin with "tissue"."""
     head = key.partition(".")[0]
     if head in Scenario.model_fields or head == "schema":
+        _refuse_other_place(key, tissue)
         return ("tissue", *_tissue_path(key, tissue)) if head == "tissue" else tuple(key.split("."))
     path = layer_path(key, layer_names(tissue))
     if path is None and head not in TISSUE_KEYS:
         raise unknown_key(key, [*_section_keys(), *tissue_keys(tissue)])
     return ("tissue", *(path or key.split(".")))
+
+
+def _refuse_other_place(key: str, tissue: Any) -> None:
+    """Refuse a layer's key that a section of the layer's name takes for its own; raises InputError."""
+    path = layer_path(key, layer_names(tissue))
+    if path is not None and path[2] in known_keys(Layer) and key not in _section_keys():
+        name = key.partition(".")[0]
+        raise InputError(
+            f"--set {key}: {name} is a section here, which has no such key, and a layer of the tissue; the layer's is "
+            f"--set tissue.{key}"
+        )
 
 
 def _tissue_path(key: str, tissue: Any) -> KeyPath:

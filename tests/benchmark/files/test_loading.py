@@ -216,6 +216,8 @@ def test_a_layer_called_like_a_section_is_reached_through_the_tissue(scenario_fi
     change(tissue_file, '"fat"', '"load"')
     scenario = load_scenario(scenario_file, {"tissue.load.thickness": "3 mm", "load.peak": "1 N"})
     assert (scenario.tissue.layer("load").thickness, scenario.load.peak) == (3e-3, 1.0)
+    with pytest.raises(InputError, match=r"--set load\.thickness: load is a section .* tissue\.load\.thickness"):
+        load_scenario(scenario_file, {"load.thickness": "3 mm"})
 
 
 def test_a_layer_name_may_hold_dots(scenario_file, tissue_file, change):
