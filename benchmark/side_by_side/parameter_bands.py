@@ -2,7 +2,8 @@
 
 Linear propagation (JCGM 100:2008, 5.2) from the file's standard uncertainties and correlations, by the finite
 elements' own derivatives and central differences of the explicit wave: one differentiated press and two waves a
-parameter, no hundred runs. Values are taken as log-normal, so that bands are factors.
+parameter, no hundred runs. Values are taken as log-normal, so that bands are factors. The mesh stands still in the
+derivatives: an automatic `fem.radius`, which runs of other values would have another of, is the scenario's own.
 """
 
 from __future__ import annotations
@@ -155,7 +156,7 @@ def _fem(scenario: Scenario, drive: Drive, keys: Sequence[str]) -> tuple[Array, 
             for key, top in zip(keys, tops, strict=True)
         ]
     )
-    return _logarithmic(rows, told), "the solver's own derivatives"
+    return _logarithmic(rows, told), "the solver's own derivatives on one mesh"
 
 
 def _logarithmic(rows: Array, told: Array) -> Array:

@@ -46,7 +46,7 @@ def test_they_are_the_root_of_the_sum_of_what_each_value_changes(model: str, ban
 
 
 def test_the_finite_elements_are_differentiated_by_themselves(bands) -> None:
-    assert bands[1].by == "the solver's own derivatives"
+    assert bands[1].by == "the solver's own derivatives on one mesh"
 
 
 def test_models_move_together_so_that_their_difference_is_surer(bands) -> None:
