@@ -11,6 +11,7 @@ import re
 import shutil
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,24 +20,26 @@ from benchmark.discovery.evidence.pool import KEPT as KEPT_FIT
 from benchmark.files.sessions.session_folder import RECORDING
 from benchmark.runs.output.unfinished import is_kept
 from reports.folders.building import dead_builds
-from reports.manifest import read_manifest, remove_known, remove_ours
-from reports.result_folder import recover
+from reports.manifest import ForeignFilesError, read_manifest, remove_known
+from reports.result_folder import BACK, STAYS, WAITS, fate_of, recover
 
 PART = re.compile(r"\.(?P<name>.+)\.[0-9a-f]{8}\.(?:part|tmp)")
 """A file that was being written."""
 BESIDE = re.compile(r"\.(?P<name>.+)\.(?P<what>lock|previous|unfinished)")
 """What stands beside a result's place."""
+GONE_BACK = "a result that stepped aside and goes back to its place"
 OLD = 60.0
 """Seconds after which a file that was being written is no longer being written."""
 
 
 @dataclass(frozen=True)
 class Litter:
-    """Something that a dead process left: where, what it is in words, and its bytes."""
+    """Something that a dead process left: where, what it is in words, its bytes, and whether all of it will go."""
 
     path: Path
     what: str
     size: int
+    goes: bool = True
 
 
 def find_litter(folder: Path) -> Iterator[Litter]:
@@ -47,7 +50,7 @@ def find_litter(folder: Path) -> Iterator[Litter]:
         for path in sorted(place / name for name in (*folders, *files)):
             what = "a result that was being written" if path in dead else _what(path)
             if what:
-                yield Litter(path, what, _size(path))
+                yield Litter(path, what, _size(path), not path.name.endswith(".previous") or _fate(path) != STAYS)
         folders[:] = [name for name in folders if not (BESIDE.fullmatch(name) or PART.fullmatch(name))]
 
 
@@ -64,7 +67,8 @@ def remove(litter: Litter) -> bool:
     """Remove what was found, as far as it is ours; whether nothing of it is left."""
     path = litter.path
     if path.name.endswith(".previous"):
-        _finish_replacing(path)
+        with suppress(ForeignFilesError):
+            recover(_place(path))
     elif path.name.endswith(".unfinished"):
         remove_known(path, _is_kept)
     elif path.is_dir():
@@ -74,8 +78,20 @@ def remove(litter: Litter) -> bool:
     return not path.exists()
 
 
+def fortune(litter: Litter, gone: bool | None) -> str:
+    """What becomes of what was found, in words; before anything is removed (`gone` is None) what will."""
+    if litter.what == GONE_BACK:
+        return {None: "would go back", True: "is back"}.get(gone, "stays")
+    if gone is None:
+        return "would go" if litter.goes else "would stay in part, it holds other files"
+    return "removed" if gone else "stays, it holds other files"
+
+
 def _what(path: Path) -> str:
-    """What a file or folder is that a dead process left, in words; empty for anything else."""
+    """What a file or folder is that a dead process left, in words; empty for anything else.
+
+    What stepped aside for a result that is not finished is no litter.
+    """
     if path.is_symlink():
         return ""
     beside = BESIDE.fullmatch(path.name)
@@ -87,7 +103,9 @@ def _what(path: Path) -> str:
     if not path.is_dir() or in_use(path.with_name(beside["name"])):
         return ""
     if beside["what"] == "previous":
-        return "a result that was being replaced" if read_manifest(path) is not None else ""
+        if read_manifest(path) is None or _fate(path) == WAITS:
+            return ""
+        return GONE_BACK if _fate(path) == BACK else "a result that was being replaced"
     ours = all(_is_kept(each.name) for each in path.rglob("*") if not each.is_dir())
     return "steps of a run that was stopped" if ours else ""
 
@@ -97,15 +115,13 @@ def _is_kept(name: str) -> bool:
     return is_kept(name) or KEPT_FIT.fullmatch(name) is not None
 
 
-def _finish_replacing(previous: Path) -> None:
-    """Put the earlier result back where no new one is in its place, or finish removing it."""
-    match = BESIDE.fullmatch(previous.name)
-    assert match is not None
-    target = previous.with_name(match["name"])
-    if target.exists():
-        remove_ours(previous)
-    else:
-        recover(target)
+def _place(previous: Path) -> Path:
+    """The place of a result that stepped aside."""
+    return previous.with_name(previous.name.removeprefix(".").removesuffix(".previous"))
+
+
+def _fate(previous: Path) -> str:
+    return fate_of(previous, _place(previous))
 
 
 def _size(path: Path) -> int:

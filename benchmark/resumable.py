@@ -15,7 +15,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from benchmark.errors import InputError
+from benchmark.runs.output.destination import destination
+from reports import whole_folder
 from reports.manifest import ForeignFilesError, foreign_files, refuse_foreign
+from reports.result_folder import place_aside
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -44,12 +47,42 @@ def check_files(path: Path, files: Collection[str], *, resumed: bool, no: str) -
     if not resumed and (others := foreign_files(path)):
         raise InputError(
             f"--out {path} holds files that are {no} ({', '.join(others[:MOST_NAMED])}); "
-            "it must be a folder that is new or empty"
+            "it must be a folder that is new, empty, or an earlier result"
         )
     try:
         refuse_foreign(path, f"--out {path}", files)
     except OSError as error:
         raise InputError(str(error)) from error
+
+
+@contextmanager
+def begun(path: Path, doing: str, growing: Collection[str]) -> Iterator[Path]:
+    """Lend a folder for the first files of a result that grows at `path`, put in place as a whole.
+
+    A complete result of ours there steps aside until `reports.result_folder.settle` is told of the new one.
+
+    Parameters
+    ----------
+    path
+        The result folder.
+    doing, growing
+        What goes on in it, and what will change in it, as `whole_folder` takes them.
+
+    Raises
+    ------
+    InputError
+        The place holds something else, or an unfinished result.
+    """
+    destination(path, "")
+    with whole_folder(path, doing, growing) as new:
+        yield new
+
+
+def say_waiting(path: Path, say: Callable[[str], None]) -> None:
+    """Say where an earlier result is while the one that grows at `path` is not complete."""
+    aside = place_aside(path.resolve())
+    if aside.is_dir():
+        say(f"the earlier result waits in {aside} and goes once this one is complete; it comes back if this one goes")
 
 
 @contextmanager
@@ -89,13 +122,13 @@ class Journal:
 
     def __init__(self, path: Path):
         self._stream = path.open("ab")
-        if self._stream.tell():
-            self._stream.write(b"\n")  # ends a line that a crash cut off
+        self._ending = b"\n" if self._stream.tell() else b""  # of a line that a crash cut off
 
     def add(self, row: DataclassInstance) -> None:
         """Write one row through to the disk."""
         line = json.dumps(asdict(row), ensure_ascii=False, allow_nan=False)
-        self._stream.write(line.encode() + b"\n")
+        self._stream.write(self._ending + line.encode() + b"\n")
+        self._ending = b""
         self._stream.flush()
         os.fsync(self._stream.fileno())
 

@@ -18,6 +18,10 @@ from typing import Any
 
 MANIFEST, PROGRAM, SCHEMA = "manifest.json", "tissuebench", 1
 LEFTOVER = re.compile(r"\.(?P<name>.+)\.[0-9a-f]{8}\.part")
+STEPS = re.compile(r"\w[\w.+-]*\.kept(?:\.[0-9]+\.part)?")
+"""Files of ours in a folder that grows: steps of a computation that was stopped."""
+PAGE = "report.html"
+"""What every result that grows ends with; by it those of versions without `doing` are known to be complete."""
 NAMED = 5
 """Foreign files that an error names."""
 
@@ -35,14 +39,18 @@ class Manifest:
     files : mapping of str to set of str
         SHA-256 by path in the folder; two where a kill may have come between saying and writing.
     growing : frozenset of str
-        Files and folders that change while a long computation is at work, known by name alone.
+        Files and folders that change while a long computation is at work, known by name alone; in such a folder only
+        steps of ours (`STEPS`) are.
     folders : frozenset of str
         Folders in it with a manifest of their own.
+    doing : str
+        What is at work there, or was stopped, as "sweep"; empty for a result that is complete.
     """
 
     files: Mapping[str, Collection[str]] = field(default_factory=dict)
     growing: frozenset[str] = frozenset()
     folders: frozenset[str] = frozenset()
+    doing: str = ""
 
 
 def read_manifest(folder: Path) -> Manifest | None:
@@ -55,7 +63,9 @@ def read_manifest(folder: Path) -> Manifest | None:
         for part in ("files", "pending"):
             for name, entry in table.get(part, {}).items():
                 files.setdefault(name, set()).add(entry["sha256"])
-        return Manifest(files, frozenset(table.get("growing", ())), frozenset(table.get("folders", ())))
+        growing, folders = (frozenset(table.get(part, ())) for part in ("growing", "folders"))
+        unnamed = "result" if growing and PAGE not in table["files"] else ""
+        return Manifest(files, growing, folders, str(table.get("doing", unnamed)))
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return None
 
@@ -78,7 +88,7 @@ def foreign_files(folder: Path) -> list[str]:
     manifest = read_manifest(folder) or Manifest()
     found = []
     parents = {str(parent) for name in manifest.files for parent in Path(name).parents}
-    for name, path in _entries(folder, skip=(*manifest.folders, *manifest.growing)):
+    for name, path in _entries(folder, skip=manifest.folders):
         if name in manifest.folders and _has_manifest(path):
             found += [f"{name}/{each}" for each in foreign_files(path)]
         elif not _is_ours(name, path, manifest, parents):
@@ -108,6 +118,18 @@ def refuse_foreign(folder: Path, shown: object = None, names: Collection[str] | 
     )
 
 
+def refuse_unfinished(folder: Path, shown: object = None) -> None:
+    """Raise ForeignFilesError where a computation that was stopped goes on from `folder`, in messages `shown`."""
+    manifest = read_manifest(folder)
+    if manifest is None or not manifest.doing:
+        return
+    kept = ", ".join(sorted(name for name in {*manifest.files, *manifest.growing} if (folder / name).exists()))
+    raise ForeignFilesError(
+        f"{folder if shown is None else shown} holds an unfinished {manifest.doing} ({kept}); the command that began "
+        "it goes on with it. Nothing in it is replaced; give another folder, or move it away"
+    )
+
+
 def remove_ours(folder: Path) -> None:
     """Remove what is ours in a folder, the manifest last, and the folder where nothing else is in it."""
     manifest = read_manifest(folder)
@@ -120,6 +142,11 @@ def remove_ours(folder: Path) -> None:
     foreign = set(foreign_files(folder))
     for name in manifest.files:
         if name not in foreign:
+            (folder / name).unlink(missing_ok=True)
+    for name in manifest.growing - foreign:
+        if (folder / name).is_dir():
+            remove_known(folder / name, lambda each: STEPS.fullmatch(each) is not None)
+        else:
             (folder / name).unlink(missing_ok=True)
     remove_empty({folder / parent for name in manifest.files for parent in Path(name).parents} - {folder})
     if [path for path in folder.iterdir() if path.name != MANIFEST]:
@@ -173,6 +200,8 @@ def _is_ours(name: str, path: Path, manifest: Manifest, parents: Collection[str]
         return True
     if name in manifest.growing:
         return stat.S_ISREG(mode) or stat.S_ISDIR(mode)
+    if any(name.startswith(f"{folder}/") for folder in manifest.growing):
+        return stat.S_ISDIR(mode) or (stat.S_ISREG(mode) and STEPS.fullmatch(path.name) is not None)
     if stat.S_ISDIR(mode):
         return name in parents
     if name == MANIFEST:

@@ -2,6 +2,7 @@
 
 A new result is built beside its place. An earlier one there steps aside as `.NAME.previous` and is removed, file by
 file as its manifest says, once the new one is in place. A kill in between leaves both; `recover` puts that in order.
+Beside a result that grows in its place the earlier one stays aside until `settle`.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from reports.atomic import StrPath, sync_folder, write_bytes, write_json
 from reports.folders.building import building, remove_dead_builds
@@ -23,14 +24,21 @@ from reports.manifest import (
     PROGRAM,
     SCHEMA,
     ForeignFilesError,
+    foreign_files,
     leftovers,
     manifest_of,
     read_manifest,
     refuse_foreign,
+    refuse_unfinished,
     remove_empty,
     remove_ours,
     sha256,
 )
+
+BACK: Final = "back"
+GOES: Final = "goes"
+STAYS: Final = "stays"
+WAITS: Final = "waits"
 
 
 class KeptElsewhereError(OSError):
@@ -38,7 +46,7 @@ class KeptElsewhereError(OSError):
 
 
 @contextmanager
-def whole_folder(path: StrPath) -> Iterator[Path]:
+def whole_folder(path: StrPath, doing: str = "", growing: Collection[str] = ()) -> Iterator[Path]:
     """Build a result folder under a temporary name beside `path`, add its manifest, and put it in place.
 
     The context manager yields the folder to fill. An earlier result at `path` is replaced only when the new one is
@@ -48,13 +56,16 @@ def whole_folder(path: StrPath) -> Iterator[Path]:
     ----------
     path
         The folder to make; missing parent folders are made (and removed again on an exception).
+    doing, growing
+        Of a result that is only begun here: what goes on in it, as "sweep", and the files and folders that will change
+        without a word in the manifest. The earlier result then stays aside until `settle`.
 
     Raises
     ------
     FileExistsError
         If `path` is a file.
     ForeignFilesError
-        If `path` holds what is not ours.
+        If `path` holds what is not ours, or what is not finished.
     KeptElsewhereError
         If the result is complete but its place is not free any more; it is kept beside.
     OSError
@@ -65,7 +76,7 @@ def whole_folder(path: StrPath) -> Iterator[Path]:
     with building(target) as temporary:
         yield temporary
         read_back(temporary)
-        write_manifest(temporary)
+        write_json(temporary / MANIFEST, {**manifest_of(temporary), **_at_work(doing, growing)})
         _put_in_place(temporary, target)
     sync_folder(target.parent)
 
@@ -116,7 +127,7 @@ def _kept_elsewhere(target: Path, fill: Callable[[Path], None]) -> Path | None:
 
 
 def check_place(path: Path, shown: object = None) -> None:
-    """Refuse a place for a result folder that holds a file or what is not ours; `shown` is its name in messages.
+    """Refuse a place that holds a file, or what is not ours or not finished; `shown` is its name in messages.
 
     What a kill left of an earlier replacement, and of building a result here, is put in order first.
     """
@@ -128,6 +139,7 @@ def check_place(path: Path, shown: object = None) -> None:
     if target.is_mount():
         raise FileExistsError(f"{name} is where a disk is mounted; give a folder in it")
     refuse_foreign(target, name)
+    refuse_unfinished(target, name)
 
 
 def recover(target: Path) -> None:
@@ -138,13 +150,17 @@ def recover(target: Path) -> None:
     ForeignFilesError
         `.NAME.previous` is something else, or has other files in it.
     """
-    previous = _previous(target)
+    previous = place_aside(target)
     if not previous.is_dir():
         return
     if previous.is_symlink():
         raise ForeignFilesError(f"{previous} is a link where an earlier result steps aside; move it away")
-    if not target.exists() and read_manifest(previous) is not None:
+    fate = fate_of(previous, target)
+    if fate == BACK:
+        if target.exists():
+            target.rmdir()
         previous.rename(target)
+    if fate in (BACK, WAITS):
         return
     remove_ours(previous)
     remove_empty({previous})
@@ -154,13 +170,36 @@ def recover(target: Path) -> None:
         )
 
 
-def write_manifest(folder: Path) -> None:
-    """Say that all that is in `folder` now is ours."""
-    write_json(folder / MANIFEST, manifest_of(folder))
+def fate_of(previous: Path, target: Path) -> str:
+    """What `recover` does with what stepped aside for `target`.
+
+    BACK: it goes back, since nothing is in its place. WAITS: what is in its place is not finished, or not ours. GOES,
+    STAYS: it is removed; with other files in it they stay, and so does the folder.
+    """
+    manifest, there = read_manifest(previous), read_manifest(target)
+    if manifest is None:
+        return STAYS if any(previous.iterdir()) else GOES
+    free = not target.exists() or (target.is_dir() and not any(target.iterdir()))
+    if free and any((previous / name).exists() for name in (*manifest.files, *manifest.folders)):
+        return BACK
+    if not free and (there is None or there.doing):
+        return WAITS
+    return STAYS if foreign_files(previous) else GOES
+
+
+def settle(path: StrPath) -> None:
+    """Say that a result that grew is complete, with the files that grew as they are now; the earlier one goes."""
+    target = Path(path).resolve()
+    table = _table(target)
+    table.pop("doing", None)
+    grown = {name: target / name for name in table.pop("growing", ()) if (target / name).is_file()}
+    new = {name: {"size": each.stat().st_size, "sha256": sha256(each)} for name, each in grown.items()}
+    write_json(target / MANIFEST, {**table, "files": dict(sorted({**table["files"], **new}.items()))})
+    remove_ours(place_aside(target))
 
 
 @contextmanager
-def extended_folder(path: StrPath, growing: Collection[str] | None = None) -> Iterator[Path]:
+def extended_folder(path: StrPath, doing: str = "", growing: Collection[str] = ()) -> Iterator[Path]:
     """Add files to a result folder that is ours or new, replacing those of the same names there.
 
     The context manager yields a folder to fill, whose files are then put into `path` one by one. What they will be is
@@ -171,8 +210,8 @@ def extended_folder(path: StrPath, growing: Collection[str] | None = None) -> It
     ----------
     path
         The result folder.
-    growing
-        Files and folders in it that will change without a word in the manifest; as before by default.
+    doing, growing
+        As of `whole_folder`, for a result that goes on; as before by default.
 
     Raises
     ------
@@ -185,7 +224,7 @@ def extended_folder(path: StrPath, growing: Collection[str] | None = None) -> It
         yield temporary
         read_back(temporary)
         refuse_foreign(target, path, manifest_of(temporary)["files"])
-        _put_into(temporary, target, growing)
+        _put_into(temporary, target, _at_work(doing, growing))
 
 
 def replace_file(path: Path, data: bytes) -> None:
@@ -199,12 +238,14 @@ def clear_leftovers(folder: Path) -> None:
         leftover.unlink()
 
 
-def _put_into(temporary: Path, target: Path, growing: Collection[str] | None) -> None:
+def _at_work(doing: str, growing: Collection[str]) -> dict[str, Any]:
+    """What the manifest of a result that grows says besides its files."""
+    return ({"doing": doing} if doing else {}) | ({"growing": sorted(growing)} if growing else {})
+
+
+def _put_into(temporary: Path, target: Path, at_work: Mapping[str, Any]) -> None:
     files = {name: (temporary / name).read_bytes() for name in manifest_of(temporary)["files"]}
-    table = _table(target)
-    if growing is not None:
-        table["growing"] = sorted(growing)
-    _say_and_write(target, files, table)
+    _say_and_write(target, files, {**_table(target), **at_work})
 
 
 def _say_and_write(folder: Path, files: Mapping[str, bytes], table: dict[str, Any]) -> None:
@@ -232,7 +273,7 @@ def _is_whole(path: Path, entry: Mapping[str, Any]) -> bool:
 
 def _put_in_place(temporary: Path, target: Path) -> None:
     """Rename `temporary` to `target`; an earlier result steps aside first and comes back if that fails."""
-    previous = _previous(target)
+    previous = place_aside(target)
     try:
         check_place(target)
         _step_aside(target, previous)
@@ -246,7 +287,7 @@ def _put_in_place(temporary: Path, target: Path) -> None:
         if isinstance(error, OSError):
             raise KeptElsewhereError(f"{error}; the new result is kept in {kept}") from error
         raise
-    if previous.exists():
+    if previous.exists() and fate_of(previous, target) != WAITS:
         remove_ours(previous)
 
 
@@ -261,7 +302,7 @@ def _step_aside(target: Path, previous: Path) -> None:
     refuse_foreign(previous, target)
 
 
-def _previous(target: Path) -> Path:
+def place_aside(target: Path) -> Path:
     """Where an earlier result steps aside; always the same, so that it is found after a kill."""
     return target.with_name(f".{target.name}.previous")
 

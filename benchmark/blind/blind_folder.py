@@ -14,11 +14,12 @@ from benchmark.blind.scoring.measure_rows import BlindRow
 from benchmark.blind.scoring.scoreboard import scoreboard
 from benchmark.blind.suites import MIXED
 from benchmark.errors import InputError
-from benchmark.resumable import check_files
+from benchmark.resumable import begun, check_files
 from benchmark.runs.output.destination import check_ready
 from benchmark.runs.output.document import describe_environment
 from reports import extended_folder, write_csv, write_json, write_page, write_text
-from reports.result_folder import clear_leftovers
+from reports.manifest import read_manifest
+from reports.result_folder import clear_leftovers, settle
 
 SCHEMA = 1
 SETTINGS, JOURNAL, DOCUMENT = "settings.json", "cases.jsonl", "blind.json"
@@ -26,7 +27,7 @@ FILES = (SETTINGS, DOCUMENT, "cases.csv", "confusion.csv", "table.md", "report.h
 
 
 def open_folder(path: Path, settings: dict[str, Any]) -> Path:
-    """Take a new or empty folder, or one of a blind run: a stopped one goes on, a finished one is redone.
+    """Take a new or empty folder, or that of an earlier result, which steps aside; a stopped blind run goes on.
 
     Returns
     -------
@@ -39,16 +40,19 @@ def open_folder(path: Path, settings: dict[str, Any]) -> Path:
         The folder holds something else, or a stopped run with other settings.
     """
     check_ready(path)
+    manifest = read_manifest(path)
+    stopped = manifest is not None and JOURNAL in manifest.growing
+    check_files(path, FILES, resumed=stopped, no="no blind run")
     there = _settings_in(path)
-    check_files(path, FILES, resumed=there is not None, no="no blind run")
-    if (path / JOURNAL).exists() and there != settings:
+    if stopped and there != settings:
         raise InputError(
             f"--out {path} holds a stopped blind run with other settings ({there}); repeat that command to go on with "
             "it, or give another folder"
         )
-    path.mkdir(parents=True, exist_ok=True)
-    clear_leftovers(path)
-    with extended_folder(path, growing=(JOURNAL,)) as new:
+    if stopped:
+        clear_leftovers(path)
+        return path / JOURNAL
+    with begun(path, "blind run", (JOURNAL,)) as new:
         write_json(new / SETTINGS, settings)
     return path / JOURNAL
 
@@ -75,8 +79,7 @@ def finish(path: Path, settings: dict[str, Any], cases: Sequence[Judged]) -> dic
         write_page(new / "report.html", scoreboard(settings, rows, cases, describe_environment(seed=settings["seed"])))
         write_json(new / DOCUMENT, result)
     (path / JOURNAL).unlink(missing_ok=True)
-    with extended_folder(path, growing=()):
-        pass
+    settle(path)
     return result
 
 

@@ -75,7 +75,7 @@ def blind(
     from benchmark.blind.suites import suite as cases_of
     from benchmark.cli.console import Console
     from benchmark.cli.show import print_json
-    from benchmark.resumable import going_on
+    from benchmark.resumable import going_on, say_waiting
     from benchmark.runs.output.destination import claimed, fresh
 
     console = Console(quiet=quiet)
@@ -94,6 +94,7 @@ def blind(
     load_discoverer(discoverer)
     with claimed(out, "blind"), console.progress(f"blind trials, suite {suite} (synthetic)") as advance:
         journal = open_folder(folder, settings)
+        say_waiting(folder, console.say)
 
         def on_case(done: int, total: int, last: Judged | None) -> None:
             remark = "" if last is None else f"{last.truth or 'null'}: {last.verdict} {last.said}"

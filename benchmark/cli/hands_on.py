@@ -150,9 +150,12 @@ def assess(
     from benchmark.assessment.skill_comparison import assess as assessed
     from benchmark.assessment.skill_comparison import summary, write_assessment
     from benchmark.cli.show import print_json
+    from benchmark.runs.output.destination import claimed, destination
 
-    found = assessed(records)
-    folder = write_assessment(found, out)
+    with claimed(out, "assess"):
+        destination(out, "", records)
+        found = assessed(records)
+        folder = write_assessment(found, out)
     if json:
         print_json({**summary(found), "folder": str(folder)})
     else:

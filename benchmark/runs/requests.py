@@ -20,6 +20,7 @@ from benchmark.runs.scenario_run import run_scenario
 from benchmark.runs.session_run import run_session
 from benchmark.runs.tissues_run import run_tissues
 from benchmark.sessions import HIDDEN_EFFECT, SHIPPED
+from reports.manifest import read_manifest
 
 DEFAULT_SCENARIO = "skin-5N"
 DEFAULT_SESSION = "phantom"
@@ -114,6 +115,8 @@ def _check_places(request: RunRequest) -> None:
     texts = (request.scenario, request.specimen, *request.tissues, *(request.settings or {}).values())
     inputs = (request.trials, request.wave, request.reference, request.model, request.effects, *texts)
     shipped = request.scenario is None and request.trials is None
+    if shipped and request.out is not None and read_manifest(request.out) is not None:
+        raise InputError(f"--out {request.out} is a result; run alone makes folders in it, so give another one")
     for name in (DEFAULT_SESSION, DEFAULT_SCENARIO, HIDDEN_EFFECT) if shipped else ("",):
         destination(None if request.out is None else request.out / name, "", inputs)
 

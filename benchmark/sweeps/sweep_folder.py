@@ -1,10 +1,9 @@
-"""The folder of a sweep: whose it is, its points on disk as they finish, and that only one process works in it."""
+"""The folder of a sweep: whose it is, and its points on disk as they finish."""
 
 from __future__ import annotations
 
 import io
 import json
-import os
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -13,7 +12,7 @@ from typing import Any
 
 from bench_hw.storage.regular_file import DOCUMENT, read_regular
 from benchmark.errors import InputError
-from benchmark.resumable import Journal, check_files, read_rows
+from benchmark.resumable import Journal, begun, check_files, read_rows
 from benchmark.runs.output.unfinished import is_kept
 from benchmark.sweeps.design import Point
 from benchmark.sweeps.parameter import Parameter
@@ -21,7 +20,7 @@ from benchmark.sweeps.plan import SCHEMA, SweepPlan, differences
 from benchmark.sweeps.point import PointResult
 from reports import extended_folder, write_json, write_text
 from reports.manifest import MANIFEST, read_manifest, remove_known
-from reports.result_folder import clear_leftovers, replace_file
+from reports.result_folder import clear_leftovers, replace_file, settle
 
 Columns = dict[str, list[Any]]
 
@@ -65,6 +64,7 @@ def write_points(path: Path, columns: Mapping[str, Sequence[Any]]) -> None:
 
 
 PLAN, JOURNAL, POINTS, UNFINISHED = "sweep.json", "journal.jsonl", "points.parquet", "unfinished"
+DOING, GROWING = "sweep", (JOURNAL, UNFINISHED)
 SCENARIO = "scenario.toml"
 FILES = (PLAN, POINTS, SCENARIO, "sensitivity.csv", "environment.json", "report.html")
 LEAST_PAUSE = 0.5
@@ -112,28 +112,40 @@ class SweepFolder:
 
 @contextmanager
 def open_folder(path: Path, plan: SweepPlan) -> Iterator[SweepFolder]:
-    """Take a new or empty folder for a sweep, or go on with the same sweep in its folder.
+    """Take a new or empty folder for a sweep, or that of an earlier result, or go on with the same sweep in its folder.
 
-    What somebody else put into the folder stays; a file of the sweep that was changed since is not replaced.
+    A complete result of another command steps aside as a whole, until `settle`. What somebody else put beside the sweep
+    stays; a file of the sweep that was changed since is not replaced.
 
     Raises
     ------
     InputError
-        The folder holds another sweep (the difference is named) or something else, or is in use.
+        The folder holds another sweep (the difference is named), or something else.
     """
     _check_holds(path, plan)
-    path.mkdir(parents=True, exist_ok=True)
-    with _locked(path):
-        clear_leftovers(path)
-        if not (path / PLAN).exists():
-            with extended_folder(path, growing=(JOURNAL, UNFINISHED)) as new:
-                write_text(new / SCENARIO, plan.scenario.to_toml())
-                write_json(new / PLAN, plan.document)
-        folder = SweepFolder(path, plan, Journal(path / JOURNAL))
-        try:
-            yield folder
-        finally:
-            folder.close()
+    clear_leftovers(path)
+    _take(path, plan)
+    folder = SweepFolder(path, plan, Journal(path / JOURNAL))
+    try:
+        yield folder
+    finally:
+        folder.close()
+    if len(folder.finished) == len(plan.points):
+        settle(path)
+
+
+def _take(path: Path, plan: SweepPlan) -> None:
+    """Begin a sweep in its folder, or go on with it there; one that is complete stays so."""
+    there = read_manifest(path)
+    known = there is not None and JOURNAL in {*there.files, *there.growing}
+    planned = known and (path / PLAN).exists()
+    finished = {row.point for row in read_rows(path / JOURNAL, PointResult)} if planned else set()
+    if there is not None and not there.doing and len(finished) == len(plan.points):
+        return
+    with extended_folder(path, DOING, GROWING) if known else begun(path, DOING, GROWING) as new:
+        if not planned:
+            write_text(new / SCENARIO, plan.scenario.to_toml())
+            write_json(new / PLAN, plan.document)
 
 
 def _check_holds(path: Path, plan: SweepPlan) -> None:
@@ -165,28 +177,3 @@ def _read_plan(path: Path) -> Mapping[str, Any]:
     if not isinstance(table, dict):
         raise InputError(f"{path} is no sweep of this program: it cannot be read as JSON")
     return table
-
-
-@contextmanager
-def _locked(path: Path) -> Iterator[None]:
-    """Keep other processes out of a folder until this one ends, however it ends (where the system has such locks)."""
-    handle = os.open(path, os.O_RDONLY) if os.name == "posix" else None
-    try:
-        if handle is not None:
-            _lock(path, handle)
-        yield
-    finally:
-        if handle is not None:
-            os.close(handle)
-
-
-def _lock(path: Path, handle: int) -> None:
-    """Lock an open folder; a file system without locks goes without."""
-    import fcntl
-
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        raise InputError(f"--out {path}: another sweep is at work in this folder") from None
-    except OSError:
-        return

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from benchmark.errors import InputError
-from benchmark.resumable import going_on
+from benchmark.resumable import going_on, say_waiting
 from benchmark.runs.options import Advance, Listener
-from benchmark.runs.output.destination import check_ready, destination
+from benchmark.runs.output.destination import check_ready, claimed, destination
 from benchmark.runs.output.document import describe_environment
 from benchmark.sweeps.design import chosen_design
 from benchmark.sweeps.local import usable_cores, work_locally
@@ -19,7 +19,7 @@ from benchmark.sweeps.parameter import parse_parameter
 from benchmark.sweeps.plan import SweepPlan, make_plan
 from benchmark.sweeps.point import FAILED, OK, PointResult, Task, failed
 from benchmark.sweeps.sensitivity import SweepFindings, keys_without_effect, sensitivity_columns, sweep_sensitivity
-from benchmark.sweeps.sweep_folder import SweepFolder, open_folder
+from benchmark.sweeps.sweep_folder import DOING, SweepFolder, open_folder
 from benchmark.sweeps.sweep_page import sweep_page
 from reports import extended_folder, write_csv, write_json, write_page
 from reports.formatting import counted
@@ -60,14 +60,20 @@ def run_sweep(request: SweepRequest, listener: Listener) -> SweepOutcome:
     Raises
     ------
     InputError
-        A request that cannot be carried out, or a folder that is another's; nothing is computed then. Or the file
-        system refuses; finished points are kept.
+        A request that cannot be carried out, or a folder that is another's or in use; nothing is computed then. Or the
+        file system refuses; finished points are kept.
     ClusterError
         The cluster is not there or is gone; finished points are kept.
     """
     plan = _plan(request)
+    with claimed(request.out, DOING):
+        return _swept(request, plan, listener)
+
+
+def _swept(request: SweepRequest, plan: SweepPlan, listener: Listener) -> SweepOutcome:
     path = _folder(request, plan)
     with going_on(path), open_folder(path, plan) as folder:
+        say_waiting(path, listener.say)
         _finish(folder, plan, request, listener)
         rows = [folder.finished[point] for point in sorted(folder.finished)]
         say_failures(rows, plan, listener.say)
@@ -93,7 +99,8 @@ def _folder(request: SweepRequest, plan: SweepPlan) -> Path:
     """Where the sweep goes."""
     if request.out is None:
         return destination(None, f"{plan.scenario.name}-sweep")
-    check_ready(request.out, (request.scenario, request.settings.get("tissue")))
+    varied = [value.strip() for text in request.vary for value in text.partition("=")[2].split(",")]
+    check_ready(request.out, (request.scenario, *request.settings.values(), *varied))
     return request.out
 
 

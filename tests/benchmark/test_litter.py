@@ -95,6 +95,37 @@ def test_an_earlier_result_that_stepped_aside_comes_back(tmp_path):
     assert (tmp_path / "result" / "a").read_text() == "1"
 
 
+def test_what_steps_aside_is_told_truly_before_it_goes_and_after(tmp_path, capsys):
+    """What a sweep had left of itself `would go`, and then stayed, in the way of the next command."""
+    for name in ("grown", "mixed"):
+        with whole_folder(tmp_path / name) as new:
+            (new / "b").write_text("2")
+    for name in ("grown", "mixed", "waits", "back"):
+        with whole_folder(tmp_path / f".{name}.previous", "sweep", ("journal.jsonl", "unfinished")) as new:
+            (new / "a").write_text("1")
+        (tmp_path / f".{name}.previous" / "journal.jsonl").write_text("{}")
+    for name in ("grown", "mixed"):
+        (tmp_path / f".{name}.previous" / "a").unlink()
+    (tmp_path / ".waits.previous").rename(tmp_path / "aside")
+    (tmp_path / ".mixed.previous" / "notes.txt").write_text("mine")
+    with whole_folder(tmp_path / "waits", "sweep", ("journal.jsonl",)) as new:
+        (new / "b").write_text("2")
+    (tmp_path / "aside").rename(tmp_path / ".waits.previous")
+    clean(tmp_path, dry_run=True)
+    said = capsys.readouterr().out.splitlines()
+    assert [line.partition("previous: ")[2].split(", ")[-1] for line in said] == [
+        "would go back", "would go", "it holds other files",
+    ]  # fmt: skip
+    clean(tmp_path)
+    said = capsys.readouterr().out.splitlines()
+    assert [line.split(", ")[-1] for line in said] == ["is back", "removed", "it holds other files"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        ".mixed.previous", ".waits.previous", "back", "grown", "mixed", "waits",
+    ]  # fmt: skip
+    assert (tmp_path / ".mixed.previous" / "notes.txt").read_text() == "mine"
+    assert (tmp_path / ".waits.previous" / "a").read_text() == "1"
+
+
 def test_the_way_to_save_a_recording_can_be_typed_as_it_stands(tmp_path, capsys):
     (tmp_path / "my session").mkdir()
     recording = tmp_path / "my session" / "trial_001.mcap.part"

@@ -10,8 +10,8 @@ import pytest
 
 from reports import result_folder
 from reports.atomic import write_text
-from reports.manifest import MANIFEST, ForeignFilesError, foreign_files
-from reports.result_folder import KeptElsewhereError, check_place, extended_folder, whole_folder, write_whole
+from reports.manifest import MANIFEST, ForeignFilesError, foreign_files, read_manifest
+from reports.result_folder import KeptElsewhereError, check_place, extended_folder, recover, whole_folder, write_whole
 
 
 def names(folder):
@@ -278,7 +278,7 @@ def killed_at(step, work):
 def at_every_kill(tmp_path, prepare, work):
     for step in range(200):
         place = tmp_path / str(step)
-        place.mkdir()
+        place.mkdir(parents=True)
         prepare(place)
         if not killed_at(step, lambda place=place: work(place)):
             assert step > 5
@@ -325,6 +325,83 @@ def test_no_kill_makes_a_folder_that_grows_foreign(tmp_path):
         result_folder.clear_leftovers(place / "out")
         assert tree(place / "out").keys() == {"a", "b", "journal", MANIFEST}
         assert foreign_files(place / "out") == []
+
+
+def begin(target):
+    with whole_folder(target, "sweep", ("journal", "unfinished")) as new:
+        write_text(new / "plan", "new")
+    (target / "journal").write_text("1")
+    (target / "unfinished" / "point_1").mkdir(parents=True)
+    (target / "unfinished" / "point_1" / "fem_steps.kept").write_text("2")
+
+
+def test_an_earlier_result_waits_until_one_that_grows_is_complete_whenever_it_is_killed(tmp_path):
+    def first(place):
+        make(place / "out", a="old", b="old")
+
+    def second(place):
+        begin(place / "out")
+        result_folder.settle(place / "out")
+
+    first(tmp_path)
+    old = tree(tmp_path / "out")
+    for place in at_every_kill(tmp_path / "kills", first, second):
+        target, aside = place / "out", place / ".out.previous"
+        recover(target)
+        assert aside.exists() or "plan" not in tree(target) or read_manifest(target).doing == ""
+        if "plan" in tree(target) and aside.exists():
+            with pytest.raises(ForeignFilesError, match=r"an unfinished sweep \(.*plan.*\); the command that began it"):
+                make(target, c="another")
+            assert read_manifest(target).doing == "sweep"
+            shutil.rmtree(target)
+            recover(target)
+        assert not aside.exists()
+        assert tree(target) == old or set(tree(target)) >= {"plan", MANIFEST}
+
+
+@pytest.mark.parametrize("page", [True, False])
+def test_what_grew_is_replaced_once_it_is_complete_and_never_before(tmp_path, page):
+    """Versions before `doing` left files that grow in the manifest of a complete result; its page tells it."""
+    with extended_folder(tmp_path / "out", growing=("journal", "unfinished")) as new:
+        write_text(new / ("report.html" if page else "plan"), "old")
+    write_text(tmp_path / "out" / "journal", "1")
+    before = tree(tmp_path)
+    if page:
+        make(tmp_path / "out", a="new")
+        assert set(tree(tmp_path)) == {"out/tables/a", f"out/{MANIFEST}"}
+    else:
+        with pytest.raises(ForeignFilesError, match=r"an unfinished result \(journal, plan\)"):
+            make(tmp_path / "out", a="new")
+        assert tree(tmp_path) == before
+
+
+@pytest.mark.parametrize("there", [True, False])
+@pytest.mark.parametrize("with_notes", [True, False])
+def test_what_an_earlier_version_left_of_a_sweep_goes_with_the_next(tmp_path, with_notes, there):
+    aside = tmp_path / ".out.previous"
+    if there:
+        make(tmp_path / "out", a="1")
+    begin(aside)
+    (aside / "plan").unlink()
+    if with_notes:
+        note(aside / "unfinished")
+    if with_notes:
+        with pytest.raises(ForeignFilesError, match="other files"):
+            make(tmp_path / "out", a="2")
+        assert (aside / "unfinished" / "notes.txt").read_text() == "mine"
+    else:
+        make(tmp_path / "out", a="2")
+        assert names(tmp_path) == ["out"]
+
+
+def test_an_earlier_result_is_not_removed_for_what_is_not_ours(tmp_path):
+    make(tmp_path / "out", a="1").rename(tmp_path / ".out.previous")
+    (tmp_path / "out").mkdir()
+    note(tmp_path / "out")
+    before = tree(tmp_path)
+    with pytest.raises(ForeignFilesError, match=r"notes\.txt"):
+        make(tmp_path / "out", a="2")
+    assert tree(tmp_path) == before
 
 
 def test_a_folder_of_theirs_where_a_result_steps_aside_is_left(tmp_path):

@@ -95,7 +95,7 @@ def clean(
     from benchmark.cli.show import print_json
     from benchmark.errors import InputError
     from benchmark.files.sessions.session_folder import recover_command
-    from benchmark.litter import find_litter, remove, unclosed_recordings
+    from benchmark.litter import find_litter, fortune, remove, unclosed_recordings
 
     if not folder.is_dir():
         raise InputError(f"{folder}: there is no such folder to clean")
@@ -103,13 +103,12 @@ def clean(
     gone = [] if dry_run else [litter for litter in found if remove(litter)]
     cut, live = unclosed_recordings(folder)
     if json:
-        rows = [{"path": str(each.path), "what": each.what, "bytes": each.size} for each in found]
+        rows = [{"path": str(each.path), "what": each.what, "bytes": each.size, "goes": each.goes} for each in found]
         paths = {"removed": [each.path for each in gone], "recordings": cut, "being_recorded": live}
         print_json({"schema": 1, "found": rows, **{key: list(map(str, each)) for key, each in paths.items()}})
         return 0
     for each in found:
-        word = "would go" if dry_run else "removed" if each in gone else "stays, it holds other files"
-        print(f"{each.path}: {each.what}, {each.size / 1e6:.1f} MB, {word}")
+        print(f"{each.path}: {each.what}, {each.size / 1e6:.1f} MB, {fortune(each, None if dry_run else each in gone)}")
     for path in cut:
         print(f"{path}: a recording that was cut off, stays; {recover_command(path)}")
     for path in live:

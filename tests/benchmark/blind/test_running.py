@@ -10,6 +10,7 @@ from benchmark.blind.running import load_discoverer
 from benchmark.blind.suites import chosen, suite
 from benchmark.cli.app import main
 from benchmark.errors import InputError
+from reports import whole_folder
 
 STUB = '''
 from pathlib import Path
@@ -120,6 +121,25 @@ def test_a_print_scatter_is_in_the_cases_names(stub: Path, tmp_path: Path, capsy
     assert json.loads((tmp_path / "out/settings.json").read_text())["print_scatter"] == "0.06 mm"
     assert main([*command, "--print-scatter", "6 mm"]) == 2
     assert "allowed: 0 mm to 1 mm" in capsys.readouterr().err
+
+
+def test_a_blind_run_replaces_a_result_as_a_whole_and_a_stopped_one_is_gone_on_with(
+    stub: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out = tmp_path / "out"
+    with whole_folder(out) as new:
+        (new / "results.json").write_text("{}")
+    command = ["blind", "--cases", "perspective", "--discoverer", "stub_for_blind:always", "--workers", "1", "--quiet"]
+    with monkeypatch.context() as stopped:
+        stopped.setattr("benchmark.blind.running._work", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+        assert main([*command, "--out", str(out)]) == 130
+    assert {path.name for path in out.iterdir()} == {"settings.json", "cases.jsonl", "manifest.json"}
+    assert (tmp_path / ".out.previous" / "results.json").is_file()
+    assert main([*command, "--seed", "4", "--out", str(out)]) == 2
+    for _ in range(2):  # the second one begins anew
+        assert main([*command, "--out", str(out)]) == 0
+        assert not (tmp_path / ".out.previous").exists()
+        assert not {"results.json", "cases.jsonl"} & {path.name for path in out.iterdir()}
 
 
 def test_a_foreign_folder_is_refused(stub: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

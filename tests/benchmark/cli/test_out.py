@@ -70,6 +70,8 @@ VERBS = {
     "sweep": ["sweep", "skin-5N", "--vary", "tool.radius=2 mm,3 mm"],
     "report": ["report", "a", "b"],
     "report one": ["report", "a"],
+    "dossier": ["dossier", "a"],
+    "assess": ["assess", "a"],
 }
 
 
@@ -92,7 +94,7 @@ def test_a_file_and_a_place_that_cannot_be_made_are_refused(benchmark_cli, here,
     assert tree(here) == {"thesis.tex": b"mine"}
 
 
-@pytest.mark.parametrize("verb", [name for name in VERBS if name not in ("blind", "sweep")])
+@pytest.mark.parametrize("verb", VERBS)
 def test_notes_beside_a_result_of_ours_survive(benchmark_cli, here, verb):
     with whole_folder(here / "p") as new:
         (new / "report.html").write_text("page")
@@ -101,6 +103,41 @@ def test_notes_beside_a_result_of_ours_survive(benchmark_cli, here, verb):
     called = benchmark_cli(*VERBS[verb], "--out", "p")
     assert called.code == 2
     assert "notes.txt" in called.err
+    assert tree(here) == before
+
+
+UNFINISHED = {
+    "sweep": ("sweep", ("journal.jsonl", "unfinished"), "sweep.json"),
+    "blind run": ("blind run", ("cases.jsonl",), "settings.json"),
+    "result": ("", ("journal.jsonl", "unfinished"), "sweep.json"),  # of a version that did not say what is at work
+}
+
+
+@pytest.mark.parametrize("kind", UNFINISHED)
+@pytest.mark.parametrize("verb", [*VERBS, "shipped"])
+def test_what_is_not_finished_is_replaced_by_no_command(benchmark_cli, here, verb, kind):
+    """Hours of points went by one mistyped `--out`."""
+    doing, growing, plan = UNFINISHED[kind]
+    with whole_folder(here / "p", doing, growing) as new:
+        (new / plan).write_text("{}")
+    (here / "p" / growing[0]).write_text("{}\n")
+    before = tree(here)
+    called = benchmark_cli(*VERBS.get(verb, ["run"]), "--out", "p")
+    assert called.code == 2
+    said = " ".join(called.err.split())
+    if (verb, plan) in (("sweep", "sweep.json"), ("blind", "settings.json")):
+        assert "--out p" in said or "p/sweep.json" in said
+    elif verb != "shipped":
+        assert f"--out p holds an unfinished {kind} ({growing[0]}, {plan}" in said
+    assert tree(here) == before
+
+
+def test_the_shipped_runs_are_not_put_into_a_result(benchmark_cli, here):
+    with whole_folder(here / "p") as new:
+        (new / "report.html").write_text("page")
+    before = tree(here)
+    called = benchmark_cli("run", "--out", "p")
+    assert (called.code, "--out p is a result" in called.err) == (2, True)
     assert tree(here) == before
 
 
@@ -139,6 +176,10 @@ def test_a_session_is_not_written_over(benchmark_cli, here, verb, out):
         ["fit", PHANTOM, "--model", "press/model.toml"],
         ["check", "--baseline", "press/baseline.json"],
         ["sweep", "press/scenario.toml", "--vary", "tool.radius=2 mm,3 mm"],
+        ["sweep", "skin-5N", "--vary", "tissue=skin_forearm,press/tissue.toml"],
+        ["sweep", "skin-5N", "--set", "load.file=press/max_deformation.csv", "--vary", "tool.radius=2 mm,3 mm"],
+        ["dossier", "press"],
+        ["assess", "press"],
     ],
 )
 def test_what_is_read_from_a_result_is_not_replaced_by_the_answer(benchmark_cli, here, command):
@@ -154,7 +195,7 @@ def test_what_is_read_from_a_result_is_not_replaced_by_the_answer(benchmark_cli,
     assert tree(here) == before
 
 
-@pytest.mark.parametrize("verb", ["fit", "run", "discover", "check", "reproduce", "verify"])
+@pytest.mark.parametrize("verb", [name for name in VERBS if name != "run two tissues"])
 def test_a_second_command_into_the_same_folder_is_refused_by_name(here, benchmark_cli, verb):
     arguments = VERBS[verb]
     with locked(here / "p", "fit"):

@@ -1,8 +1,5 @@
 """A sweep's folder and its points.parquet: names, types, order and empty cells, and whose the folder is."""
 
-import json
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +11,8 @@ from benchmark.errors import InputError
 from benchmark.sweeps.parameter import parse_parameter
 from benchmark.sweeps.point import PointResult, failed
 from benchmark.sweeps.sweep_folder import open_folder, point_columns, write_points
+from reports import whole_folder, write_text
+from reports.manifest import foreign_files, read_manifest
 
 PARAMETERS = [parse_parameter(text) for text in ("d.e=50 kPa:500 kPa:2", "d.nu=0.4,0.45", "tool.contact=a,b")]
 POINTS = [("50 kPa", "0.4", "a"), ("500 kPa", "0.45", "b"), ("50 kPa", "0.45", "a")]
@@ -158,18 +157,55 @@ def test_what_is_not_of_the_sweep_stays_and_what_was_changed_is_refused(plan_of,
     assert (tmp_path / "points.parquet").read_bytes() == b"corrected by hand"
 
 
-def test_only_one_process_works_in_a_folder(plan_of, tmp_path: Path) -> None:
-    pytest.importorskip("fcntl", reason="this system has no such locks")
-    code = (
-        "import fcntl, os, sys\nfcntl.flock(os.open(sys.argv[1], os.O_RDONLY), fcntl.LOCK_EX)\n"
-        "print('locked', flush=True)\nsys.stdin.read()"
-    )
-    command = [sys.executable, "-c", code, str(tmp_path)]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as other:
-        assert other.stdout is not None
-        assert other.stdout.readline() == "locked\n"
-        with pytest.raises(InputError, match="at work"), open_folder(tmp_path, plan_of(VARY)):
-            pass
-        other.kill()
-    with open_folder(tmp_path, plan_of(VARY)):
-        assert json.loads((tmp_path / "sweep.json").read_text())["points"] == 3
+def tree(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def all_points(folder) -> None:
+    for point in (1, 2, 3):
+        folder.add(failed(point, "no luck"))
+
+
+def test_a_result_of_another_command_waits_as_a_whole_and_goes_once_the_sweep_is_complete(plan_of, tmp_path) -> None:
+    out, aside = tmp_path / "p", tmp_path / ".p.previous"
+    with whole_folder(out) as new:
+        for name in ("results.json", "scenario.toml", "report.html"):
+            write_text(new / name, "{}" if name.endswith("json") else "")
+    before = tree(out)
+    with open_folder(out, plan_of(VARY)) as folder:
+        folder.add(ROW)
+    assert tree(aside) == before
+    assert {"results.json", "report.html"}.isdisjoint(tree(out))
+    with open_folder(out, plan_of(VARY)) as folder:
+        assert folder.finished == {2: ROW}
+        assert tree(aside) == before
+        all_points(folder)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["p"]
+
+
+def test_a_complete_sweep_is_replaced_with_its_journal_and_stays_as_it_is_when_it_is_looked_at(plan_of, tmp_path):
+    out = tmp_path / "p"
+    with open_folder(out, plan_of(VARY)) as folder:
+        all_points(folder)
+    assert "journal.jsonl" in read_manifest(out).files
+    before = tree(out)
+    with open_folder(out, plan_of(VARY)) as folder:
+        assert len(folder.finished) == 3
+        assert not read_manifest(out).doing
+    assert {name: data for name, data in tree(out).items() if name == "journal.jsonl"}.items() <= before.items()
+    with whole_folder(out) as new:
+        write_text(new / "a", "1")
+    assert set(tree(tmp_path)) == {"p/a", "p/manifest.json"}
+
+
+def test_points_taken_out_of_the_journal_of_a_complete_sweep_are_computed_again(plan_of, tmp_path) -> None:
+    with open_folder(tmp_path, plan_of(VARY)) as folder:
+        all_points(folder)
+    lines = (tmp_path / "journal.jsonl").read_bytes().splitlines(keepends=True)
+    (tmp_path / "journal.jsonl").write_bytes(b"".join(lines[:2]))
+    with open_folder(tmp_path, plan_of(VARY)) as folder:
+        assert set(folder.finished) == {1, 2}
+        assert read_manifest(tmp_path).doing == "sweep"
+        folder.add(ROW)
+        all_points(folder)
+    assert foreign_files(tmp_path) == []
