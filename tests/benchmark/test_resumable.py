@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchmark.errors import InputError
-from benchmark.resumable import Journal, going_on, read_rows
+from benchmark.resumable import Journal, begun, going_on, read_rows, say_waiting
 from benchmark.sweeps.point import PointResult, failed
 
 ROWS = [
@@ -28,6 +28,16 @@ def written(path: Path, rows=ROWS) -> Path:
         journal.add(row)
     journal.close()
     return path
+
+
+def test_where_an_earlier_result_waits_is_said(tmp_path: Path) -> None:
+    said: list[str] = []
+    for name in ("results.json", "plan.json"):
+        with begun(tmp_path / "p", *(("sweep", ("journal.jsonl",)) if name == "plan.json" else ("", ()))) as new:
+            (new / name).write_text("{}")
+        say_waiting(tmp_path / "p", said.append)
+    assert len(said) == 1
+    assert f"the earlier result waits in {tmp_path / '.p.previous'} and goes once" in said[0]
 
 
 def test_it_reads_back_exactly(tmp_path: Path) -> None:

@@ -375,6 +375,26 @@ def test_what_grew_is_replaced_once_it_is_complete_and_never_before(tmp_path, pa
         assert tree(tmp_path) == before
 
 
+def test_what_is_theirs_in_a_folder_that_grew_is_named_and_stays(tmp_path):
+    begin(tmp_path / "out")
+    note(tmp_path / "out" / "unfinished")
+    result_folder.settle(tmp_path / "out")
+    before = tree(tmp_path)
+    with pytest.raises(ForeignFilesError, match=r"unfinished/notes\.txt"):
+        make(tmp_path / "out", a="new")
+    assert tree(tmp_path) == before
+    begin(tmp_path / "grows")
+    note(tmp_path / "grows" / "unfinished")
+    assert foreign_files(tmp_path / "grows") == ["unfinished/notes.txt"]
+
+
+def test_an_earlier_result_comes_back_into_an_empty_folder(tmp_path):
+    make(tmp_path / "out", a="1").rename(tmp_path / ".out.previous")
+    (tmp_path / "out").mkdir()
+    recover(tmp_path / "out")
+    assert set(tree(tmp_path)) == {"out/tables/a", f"out/{MANIFEST}"}
+
+
 @pytest.mark.parametrize("there", [True, False])
 @pytest.mark.parametrize("with_notes", [True, False])
 def test_what_an_earlier_version_left_of_a_sweep_goes_with_the_next(tmp_path, with_notes, there):
