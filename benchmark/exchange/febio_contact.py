@@ -32,6 +32,11 @@ from fem.verification.rigid_contact import (
 RIGID = "rigid body"
 TURNS, SHIFTS = ("Ru_dof", "Rv_dof", "Rw_dof"), ("Rx_dof", "Ry_dof", "Rz_dof")
 MUST_BE_ZERO = ("fric_coeff", "two_pass", "node_reloc", "seg_up", "search_radius", "update_penalty", "gaptol")
+WALL = "laugon tolerance penalty auto_penalty plane offset"
+PAIR = " ".join(
+    (*MUST_BE_ZERO, "laugon tolerance penalty auto_penalty search_tol minaug maxaug knmult ktmult fric_penalty")
+)
+"""What a wall and a pair of surfaces may have; the last three do not act without friction, at equilibrium."""
 PENALTY_ALONE, AUGMENTED = ("PENALTY", "0"), ("AUGLAG", "1")
 SEARCH_TOLERANCE, MOST_AUGMENTATIONS = 0.01, 10
 FLAT = 1e-6
@@ -53,6 +58,9 @@ class Source(Protocol):
 
     def row(self, text: str | None, what: str) -> list[float]:
         """Numbers between commas."""
+
+    def only(self, one: ElementTree.Element, known: str, what: str) -> None:
+        """Refuse what an element has beside what is known, words between blanks."""
 
     def scaled(self, one: ElementTree.Element | None, what: str) -> float:
         """A value times its load curve at the end."""
@@ -81,10 +89,12 @@ def rigid_motions(source: Source) -> Mapping[str, FloatArray]:
         if body not in motions:
             raise source.refuse(f"{what}: {body} is no material of type {RIGID}")
         if one.get("type") == "rigid_fixed":
+            source.only(one, " ".join(("rb", *SHIFTS, *TURNS)), what)
             still = [source.number(one.findtext(name) or "0", what) != 0.0 for name in (*SHIFTS, *TURNS)]
             motions[body][still[:3]] = 0.0
             turning[body] = turning[body] and not all(still[3:])
             continue
+        source.only(one, "rb dof value relative", what)
         axis = (one.findtext("dof") or "").strip()
         if axis not in ("x", "y", "z") or source.number(one.findtext("relative") or "0", what) != 0.0:
             raise source.refuse(f"{what}: must move absolutely along x, y or z")
@@ -133,6 +143,7 @@ class ContactReader:
         what = f"{one.tag} {one.get('name')}"
         if one.get("type") != "rigid_wall":
             raise self.source.refuse(f"{what}: type {one.get('type')!r} is not read")
+        self.source.only(one, WALL, what)
         equation = np.array(self.source.row(one.findtext("plane"), f"{what}: plane"))
         if equation.shape != (4,) or not equation[:3].any():
             raise self.source.refuse(f"{what}: plane must be a normal and a distance")
@@ -144,6 +155,7 @@ class ContactReader:
         what = f"{one.tag} {one.get('name')}"
         if one.get("type") != "sliding-node-on-facet":
             raise self.source.refuse(f"{what}: contact of type {one.get('type')!r} is not read")
+        self.source.only(one, PAIR, what)
         for name in MUST_BE_ZERO:
             if self.source.number(one.findtext(name) or "0", f"{what}: {name}") != 0.0:
                 raise self.source.refuse(f"{what}: {name} = {one.findtext(name)}: only 0 is read")

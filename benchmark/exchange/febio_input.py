@@ -3,14 +3,15 @@
 Read are linear elements (hex8, tet4), neo-Hookean (coupled, as FEBio has it), Mooney-Rivlin and Ogden parts, held and
 prescribed displacements, nodal forces, linear constraints, rigid surfaces that touch (see
 :mod:`benchmark.exchange.febio_contact`), and load curves at the end of the one step: everything grows with the share of
-the load, but for penalties, which are those at the end. What else acts in a file (other contact, pressure, other
-materials) is refused by its name, so that no case is solved by half. Units are the file's own. Written after FEBio's
-documentation.
+the load, but for penalties, which are those at the end. Between their points curves are linear, outside them constant
+or extrapolated. What else acts in a file (other contact, pressure, materials, curves, inertia, any parameter that is
+not known here) is refused by its name, so that no case is solved by half; what only steers a solver's convergence does
+not act. Units are the file's own. Written after FEBio's documentation, and its source where that is silent.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -28,14 +29,41 @@ from fem.verification.constrained_body import ConstrainedBody, Constraint
 
 AXES = "xyz"
 OGDEN_TERMS = 6
-IGNORED = frozenset(
-    {"Module", "Control", "Globals", "Material", "Mesh", "MeshDomains", "LoadData", "Output", "MeshData"}
+OPTIONS = (
+    "analysis time_steps step_size title solver time_stepper optimize_bw plot_level plot_range plot_stride "
+    "plot_zero_state output_level output_stride print_level"
 )
-"""Sections that do not act, or are read elsewhere."""
-ACTING = frozenset({"Boundary", "Loads", "Contact", "Rigid", "Constraints"})
+SECTIONS: Mapping[str, str | None] = MappingProxyType(
+    {
+        "Control": OPTIONS,
+        "Globals": "Constants",
+        "Material": "material",
+        "Mesh": "Nodes Elements NodeSet Surface SurfacePair ElementSet Edge DiscreteSet PartList",
+        "MeshDomains": "SolidDomain",
+        "MeshData": "",
+        "Boundary": "bc",
+        "LoadData": "load_controller",
+        **dict.fromkeys(("Module", "Output", "Loads", "Contact", "Rigid", "Constraints")),
+    }
+)
+"""What each section may have; None: anything, since it does not act, or is refused where it is read."""
+PARTS: Mapping[str, str] = MappingProxyType(
+    {
+        "fix": "dofs",
+        "zero displacement": "x_dof y_dof z_dof",
+        "prescribe": "dof scale relative",
+        "prescribed displacement": "dof value relative",
+    }
+)
+"""What each kind of boundary condition may have. From rest a relative displacement is the absolute one."""
+CURVED = frozenset({"value", "scale", "offset", "penalty", "dtmax"})
+"""Numbers of which a load curve is read, or, for the longest time step, does not act."""
 COUPLED = frozenset({"neo-Hookean"})
 DEFAULT_MODEL = ("default", "0")
 SUPPORTED_ELEMENTS = ("hex8", "tet4")
+USUAL_RULES = frozenset({None, "HEX8G8", "TET4G1", "TET4G4"})
+AT_POINT = 1e-9
+"""Of a load curve's duration, by which a time may be off one of its ends."""
 
 
 @dataclass(frozen=True)
@@ -114,9 +142,7 @@ class _Reader:
         return InputError(f"{self.path}: {what}")
 
     def case(self) -> FebioCase:
-        for section in self.root:
-            if section.tag not in IGNORED | ACTING and len(section):
-                raise self.refuse(f"{section.tag}: this section is not read, so the case would not be the same")
+        self._require_known()
         points, rigid = self._nodes(), self._rigid
         numbers = [number for number in points if number not in rigid]
         nodes = np.array([points[number] for number in numbers]).reshape(-1, 3)
@@ -138,6 +164,40 @@ class _Reader:
         )  # fmt: skip
         body = replace(body, contacts=ContactReader(self, place, rigid, points).contacts(body))
         return FebioCase(self.path.stem, body, self._steps(), tuple(sorted(kinds)))
+
+    def _require_known(self) -> None:
+        """Refuse sections, options of the analysis, and load curves that act and are not read."""
+        seen = set()
+        for section in self.root:
+            name, words = section.tag, (section.text or "").strip()
+            if name not in SECTIONS and (len(section) or words or section.attrib):
+                raise self.refuse(f"{name}: this section is not read, so the case would not be the same")
+            if name in seen or "from" in section.attrib:
+                raise self.refuse(f"{name}: a section must be there once, and whole in this file")
+            seen.add(name)
+            if (known := SECTIONS.get(name)) is not None:
+                self.only(section, known, name)
+            for one in () if name == "Output" else section.iter():
+                if "lc" in one.attrib and one.tag not in CURVED:
+                    raise self.refuse(f"{name}: {one.tag}: a load curve of it is not read")
+        self._require_static()
+
+    def _require_static(self) -> None:
+        for place in ("Module", "Control/solver"):
+            found = self.root.find(place)
+            if found is not None and found.get("type", "solid") != "solid":
+                raise self.refuse(f"{place}: type {found.get('type')!r} is not read, only 'solid'")
+        analysis = self.root.find("Control/analysis")
+        kind = "static" if analysis is None else (analysis.get("type") or analysis.text or "").strip()
+        if kind.lower() not in ("static", "0"):
+            raise self.refuse(f"Control: analysis {kind!r} is not read, only STATIC")
+        if self.number(self.root.findtext("Control/solver/arc_length") or "0", "Control: arc_length") != 0.0:
+            raise self.refuse("Control: solver: arc_length is not read")
+
+    def only(self, one: ElementTree.Element, known: str, what: str) -> None:
+        for part in one:
+            if part.tag not in known.split():
+                raise self.refuse(f"{what}: {part.tag} is not read, so the case would not be the same")
 
     def _each(self, section: str, tag: str) -> Iterator[ElementTree.Element]:
         found = self.root.find(section)
@@ -202,6 +262,7 @@ class _Reader:
                 raise self.refuse(
                     f"Elements {name}: {kind} without a SolidDomain, or none of {', '.join(SUPPORTED_ELEMENTS)}"
                 )
+            self._require_usual(name, kind, material[name])
             kinds.add(kind)
             for one in group.findall("elem"):
                 what = f"elem {one.get('id')}"
@@ -215,19 +276,33 @@ class _Reader:
         elements[SOLID_ELEMENTS[kind].vtk_order] = table.T
         return kind, elements, np.array(part), names
 
+    def _require_usual(self, name: str | None, element: str, material: str) -> None:
+        """Refuse a domain whose elements are not those that its material has by default."""
+        types = ["elastic-solid"] if self._law(material)[0] in COUPLED else ["three-field-solid"]
+        types += ["elastic-solid", "three-field-solid"] if element == "tet4" else []  # of one strain each
+        usual: dict[str, Collection[str | None]] = {"type": [None, *types], "elem_type": USUAL_RULES}
+        for one in self.root.findall("MeshDomains/SolidDomain"):
+            if one.get("name") == name:
+                self.only(one, "", f"SolidDomain {name}")
+                for word, known in usual.items():
+                    if one.get(word) not in known:
+                        raise self.refuse(f"SolidDomain {name}: {word} {one.get(word)!r} is not read")
+
     def _law(self, name: str) -> tuple[str, Material]:
         found = [one for one in self.root.findall("Material/material") if one.get("name") == name]
         if not found or found[0].get("type") not in LAWS:
             kind = found[0].get("type") if found else "none"
             raise self.refuse(f"material {name}: {kind} is not read; read are {', '.join(sorted(LAWS))}")
+        kind = str(found[0].get("type"))
+        law, constants = LAWS[kind]
+        self.only(found[0], f"{constants} density pressure_model", f"material {name}")
         told = {one.tag: one.text for one in found[0]}
         model = (told.pop("pressure_model", None) or DEFAULT_MODEL[0]).strip()
         values = {tag: self.number(text, f"material {name}: {tag}") for tag, text in told.items()}
-        kind = str(found[0].get("type"))
         if model not in DEFAULT_MODEL:
             raise self.refuse(f"material {name}: another pressure_model than FEBio's default is not read")
         try:
-            return kind, LAWS[kind](values)
+            return kind, law(values)
         except KeyError as error:
             raise self.refuse(f"material {name}: {error.args[0]} is missing") from None
         except FemError as error:
@@ -255,11 +330,12 @@ class _Reader:
             return
         if kind not in ("fix", "zero displacement", "prescribe", "prescribed displacement"):
             raise self.refuse(f"{what}: type {kind!r} is not read")
+        self.only(one, PARTS[kind], what)
         nodes = self._set(one.get("node_set"), place)
         if kind == "fix":
             held[np.ix_(self._axes(one.findtext("dofs"), what), nodes)] = True
         elif kind == "zero displacement":
-            axes = [n for n, axis in enumerate(AXES) if (one.findtext(f"{axis}_dof") or "0").strip() == "1"]
+            axes = [n for n, axis in enumerate(AXES) if self.number(one.findtext(f"{axis}_dof") or "0", what) != 0.0]
             held[np.ix_(axes, nodes)] = True
         else:
             amount = self.scaled(one.find("scale" if kind == "prescribe" else "value"), what)
@@ -269,6 +345,9 @@ class _Reader:
         what = f"{one.tag} {one.get('name')}"
         if one.tag != "nodal_load" or one.get("type") not in ("nodal_load", None):
             raise self.refuse(f"{what}: type {one.get('type')!r} is not read")
+        self.only(one, "dof scale relative", what)
+        if self.number(one.findtext("relative") or "0", what) != 0.0:
+            raise self.refuse(f"{what}: relative = {one.findtext('relative')}: only 0 is read")
         nodes = self._set(one.get("node_set"), place)
         force[np.ix_(self._axes(one.findtext("dof"), what), nodes)] += self.scaled(one.find("scale"), what)
 
@@ -280,29 +359,66 @@ class _Reader:
         return value if curve is None else value * self._curve(curve)
 
     def _curve(self, number: str) -> float:
+        """Value of a load curve at the end."""
+        what = f"load_controller {number}"
         for one in self.root.findall("LoadData/load_controller"):
             if one.get("id") == number:
-                points = [self.row(p.text, f"load_controller {number}") for p in one.iter() if p.tag in ("point", "pt")]
+                if one.get("type", "loadcurve") != "loadcurve":
+                    raise self.refuse(f"{what}: type {one.get('type')!r} is not read")
+                self.only(one, "interpolate extend points point pt", what)
+                points = [self.row(p.text, what) for p in one.iter() if p.tag in ("point", "pt")]
                 if not points or any(len(point) != 2 for point in points):
-                    raise self.refuse(f"load_controller {number}: must have points of time and value")
+                    raise self.refuse(f"{what}: must have points of time and value")
                 time, value = np.array(sorted(points)).T
-                return float(np.interp(self._end(), time, value))
-        raise self.refuse(f"there is no load_controller {number}")
+                if (np.diff(time) <= 0.0).any():
+                    raise self.refuse(f"{what}: two points at one time are not read")
+                return self._value(one, what, time, value)
+        raise self.refuse(f"there is no {what}")
+
+    def _value(self, one: ElementTree.Element, what: str, time: np.ndarray, value: np.ndarray) -> float:
+        """A curve's value at the end: its point's there, or between and outside its points as the file says."""
+        inside, outside = (
+            (one.findtext(word) or one.get(word) or usual).strip().upper()
+            for word, usual in (("interpolate", "LINEAR"), ("extend", "CONSTANT"))
+        )
+        end, near = self._end(), AT_POINT * np.ptp(time)
+        if len(time) == 1 or abs(end - time[0]) <= near or abs(end - time[-1]) <= near:
+            return float(np.interp(end, time, value))
+        within = time[0] < end < time[-1]
+        if inside != "LINEAR" and (within or outside != "CONSTANT"):
+            raise self.refuse(f"{what}: interpolate {inside} is not read, only LINEAR")
+        if within or outside == "CONSTANT":
+            return float(np.interp(end, time, value))
+        if outside != "EXTRAPOLATE":
+            raise self.refuse(f"{what}: extend {outside} is not read, only CONSTANT and EXTRAPOLATE")
+        last = slice(0, 2) if end < time[0] else slice(-2, None)
+        (before, after), (low, high) = time[last], value[last]
+        return float(low + (high - low) * (end - before) / (after - before))
 
     def _end(self) -> float:
         return self._steps() * self.number(self.root.findtext("Control/step_size"), "Control: step_size")
 
     def _steps(self) -> int:
-        return max(1, round(self.number(self.root.findtext("Control/time_steps"), "Control: time_steps")))
+        steps = self.number(self.root.findtext("Control/time_steps"), "Control: time_steps")
+        if steps < 1.0 or steps != round(steps):
+            raise self.refuse(f"Control: time_steps = {steps:g}: must be a whole number from 1 on")
+        return round(steps)
 
     def _constraints(self, place: dict[int, int]) -> Iterator[Constraint]:
         for one in self._each("Boundary", "bc"):
             if one.get("type") == "linear constraint":
+                self.only(one, "node dof child_dof offset", "linear constraint")
+                if self.number(one.findtext("offset") or "0", "linear constraint: offset") != 0.0:
+                    raise self.refuse(f"linear constraint: offset = {one.findtext('offset')}: only 0 is read")
                 component, node, _ = self._term(one, place)
                 yield Constraint(component, node, tuple(self._term(child, place) for child in one.findall("child_dof")))
 
     def _term(self, one: ElementTree.Element, place: dict[int, int]) -> tuple[int, int, float]:
         what = "linear constraint"
+        if one.tag == "child_dof":
+            self.only(one, "node dof value", f"{what}: child_dof")
+        if any("lc" in part.attrib for part in one):
+            raise self.refuse(f"{what}: a load curve of it is not read")
         axis = self._axes(one.findtext("dof"), what)[0]
         node = self._place(self.number(one.findtext("node"), what), place, what)
         return axis, node, self.number(one.findtext("value") or "1", what)
@@ -324,11 +440,11 @@ def _ratio(shear: float, bulk: float) -> float:
     return (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear))
 
 
-LAWS: Mapping[str, Callable[[Mapping[str, float]], Material]] = MappingProxyType(
+LAWS: Mapping[str, tuple[Callable[[Mapping[str, float]], Material], str]] = MappingProxyType(
     {
-        "neo-Hookean": lambda values: CoupledNeoHookean(values["E"], values["v"]),
-        "Mooney-Rivlin": _mooney_rivlin,
-        "Ogden": _ogden,
+        "neo-Hookean": (lambda values: CoupledNeoHookean(values["E"], values["v"]), "E v"),
+        "Mooney-Rivlin": (_mooney_rivlin, "c1 c2 k"),
+        "Ogden": (_ogden, " ".join(["k", *(f"{letter}{n}" for letter in "cm" for n in range(1, OGDEN_TERMS + 1))])),
     }
 )
-"""FEBio's laws by their names."""
+"""FEBio's laws and their constants by their names."""

@@ -47,6 +47,14 @@ def text(material=NEO_HOOKEAN, boundary=SLIDING + PRESCRIBED, loads="", version=
     )
 
 
+SOLVER = "<solver {}><arc_length>{}</arc_length></solver></Control>"
+
+
+def curved(words, steps):
+    """The cube with words before its load curve's points, and as many steps of 0.2."""
+    return text().replace("<points>", f"{words}<points>").replace("<time_steps>5<", f"<time_steps>{steps}<")
+
+
 def read(folder, content):
     path = folder / "case.feb"
     path.write_text(content, encoding="latin-1")
@@ -137,11 +145,77 @@ def test_the_later_format_is_the_same(tmp_path):
         (text(extra="<Step><step/></Step>"), "Step: this section is not read"),
         (text().replace("7,3,2", "7,3,99"), "no node 99"),
         (text().replace("hex8", "penta6"), "penta6"),
+        (curved("<extend>REPEAT</extend>", 10), "load_controller 1: extend REPEAT is not read"),
+        (curved("<extend>REPEAT OFFSET</extend>", 10), "extend REPEAT OFFSET is not read"),
+        (curved("<interpolate>STEP</interpolate>", 3), "load_controller 1: interpolate STEP is not read"),
+        (curved("<interpolate>SMOOTH</interpolate>", 3), "interpolate SMOOTH is not read"),
+        (text().replace('r id="1"', 'r id="1" type="math"'), "load_controller 1: type 'math' is not read"),
+        (text().replace("<pt>1,1</pt>", "<pt>1,1</pt><pt>1,0</pt>"), "two points at one time"),
+        (text().replace("<points>", "<relative/><points>"), "load_controller 1: relative is not read"),
+        (text().replace("<time_steps>", "<analysis>DYNAMIC</analysis><time_steps>"), "analysis 'DYNAMIC' is not read"),
+        (text().replace("<time_steps>", '<analysis type="dynamic"/><time_steps>'), "analysis 'dynamic' is not read"),
+        (text().replace("<time_steps>", "<final_time>3</final_time><time_steps>"), "Control: final_time is not read"),
+        (text().replace("<time_steps>5<", "<time_steps>0<"), "time_steps = 0"),
+        (text().replace("</Control>", SOLVER.format('type="explicit-solid"', 0)), "'explicit-solid' is not read"),
+        (text().replace("</Control>", SOLVER.format("", 1)), "arc_length is not read"),
+        (text().replace('type="solid"', 'type="biphasic"'), "Module: type 'biphasic' is not read"),
+        (text(extra="<Globals><Variables/></Globals>"), "Globals: Variables is not read"),
+        (text(extra="<MeshData><ElementData/></MeshData>"), "MeshData: ElementData is not read"),
+        (text(extra="<Include>more.feb</Include>"), "Include: this section is not read"),
+        (text(extra="<Boundary/>"), "Boundary: a section must be there once"),
+        (text(extra='<Loads from="more.feb"/>'), "Loads: a section must be there once, and whole"),
+        (text(boundary=SLIDING + "<rigid/>"), "Boundary: rigid is not read"),
+        (text(NEO_HOOKEAN.replace("<E>", '<E lc="1">')), "Material: E: a load curve of it is not read"),
+        (text(NEO_HOOKEAN.replace("<E>", "<mat_axis/><E>")), "material m: mat_axis is not read"),
+        (text().replace("<SolidDomain", "<ShellDomain/><SolidDomain"), "MeshDomains: ShellDomain is not read"),
+        (text().replace("<SolidDomain", '<SolidDomain type="udg-hex"'), "SolidDomain part: type 'udg-hex' is not read"),
+        (text().replace("<SolidDomain", '<SolidDomain elem_type="HEX8G1"'), "elem_type 'HEX8G1' is not read"),
+        (
+            text(boundary=SLIDING + PRESCRIBED.replace("</bc>", "<shell_bottom>1</shell_bottom></bc>")),
+            "shell_bottom is",
+        ),
+        (text(loads=FORCE.replace("</nodal", "<relative>1</relative></nodal")), "relative = 1: only 0 is read"),
+        (text(loads=FORCE.replace("</nodal", "<shell_bottom/></nodal")), "nodal_load None: shell_bottom is not read"),
+        (text(boundary=SLIDING + TIED.replace("</bc>", "<offset>1</offset></bc>")), "offset = 1: only 0 is read"),
+        (text(boundary=SLIDING + TIED.replace("<value>", '<value lc="1">')), "linear constraint: a load curve"),
+        (text(boundary=SLIDING + TIED.replace("<value>", "<scale/><value>")), "child_dof: scale is not read"),
     ],
 )
 def test_what_is_not_covered_is_refused_by_its_name(tmp_path, content, said):
     with pytest.raises(InputError, match=said):
         read(tmp_path, content)
+
+
+@pytest.mark.parametrize(
+    ("words", "steps", "share"),
+    [
+        ("", 3, 0.6),
+        ("", 6, 1.0),
+        ("<interpolate>LINEAR</interpolate><extend>CONSTANT</extend>", 6, 1.0),
+        ("<extend>EXTRAPOLATE</extend>", 6, 1.2),
+        ("<interpolate>STEP</interpolate><extend>REPEAT</extend>", 5, 1.0),  # at its last point no word acts
+    ],
+)
+def test_a_load_curve_is_read_at_the_end(tmp_path, words, steps, share):
+    found = read(tmp_path, curved(words, steps)).solved()
+    np.testing.assert_allclose(found[0, 4:], -0.4 * share, rtol=1e-12)
+
+
+def test_before_its_first_point_a_curve_is_that_point_or_extrapolated(tmp_path):
+    for words, share in (("", 1.0), ("<extend>EXTRAPOLATE</extend>", 0.6)):
+        late = curved(words, 3).replace("<pt>0,0</pt><pt>1,1</pt>", "<pt>1,1</pt><pt>2,2</pt>")
+        np.testing.assert_allclose(read(tmp_path, late).solved()[0, 4:], -0.4 * share, rtol=1e-12)
+
+
+def test_what_does_not_act_is_passed_over(tmp_path):
+    more = "<Globals><Constants><T>0</T></Constants></Globals><Output><plotfile/></Output>"
+    content = text(NEO_HOOKEAN.replace("<E>", "<density>1</density><E>"), extra=more).replace(
+        "</Control>",
+        '<analysis>STATIC</analysis><title>a</title><time_stepper><dtmax lc="1">1</dtmax></time_stepper>'
+        '<solver type="solid"><dtol>0.1</dtol></solver></Control>',
+    )
+    content = content.replace("<SolidDomain", '<SolidDomain type="elastic-solid" elem_type="HEX8G8"')
+    assert read(tmp_path, content).norm() == read(tmp_path, text()).norm()
 
 
 def test_a_load_that_is_too_much_for_one_step_is_halved(tmp_path):
