@@ -316,6 +316,9 @@ class Stepper:
 
     def _solve(self, value: float, time: float) -> tuple[NewtonResult, System]:
         """Newton's result at a load value and a time, and the equations that fit it."""
+        lost = self._problem.system.lets_go(value) if self._control == "force" else ""
+        if lost:
+            return NewtonResult(self._state, 0, lost), self._problem.system
         iterations = 0
         for guess, begun in self._beginnings(value, time):
             result, system = self._settle(guess, value, begun, self._control)

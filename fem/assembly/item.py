@@ -147,6 +147,11 @@ class EquationItem(ABC):
         """The item that may be followed over limit points; None if it is this one, or may not."""
         return None
 
+    def lets_go(self, press: float) -> str:
+        """Why it cannot hold a press in N, whatever the state, or ""."""
+        del press
+        return ""
+
     def is_sound(self, y: FloatArray) -> bool:
         """Whether what lies between its points at unknowns y (n,) is near enough to where the points are."""
         del y

@@ -258,6 +258,10 @@ class System:
             total += 0.5 * weight * float(np.sum(state.force * way))
         return total
 
+    def lets_go(self, press: float) -> str:
+        """Why a press in N cannot be held, whatever the state, or ""."""
+        return next((why for why in (item.lets_go(press) for item in self.items) if why), "")
+
     def is_sound(self, y: FloatArray) -> bool:
         """Whether all items are at unknowns y (n,); see :meth:`fem.assembly.item.EquationItem.is_sound`."""
         return all(item.is_sound(y) for item in self.items)

@@ -26,6 +26,7 @@ from fem.interactions.active_set import Friction, in_touch
 from fem.interactions.punch import Gap, Punch
 
 LOOSE = 1e-12  # stiffness of a punch in the air, in penalties
+ROUND_OFF = 1e-9  # of the largest press or of what adhesion holds, up to which a pull is none, or not more
 MOST_ENTRY = 0.5
 """Of the edge radius, by which the surface may enter the punch between its nodes; at 0.27 the depth was within 0.5 % of
 that of much smaller elements."""
@@ -287,6 +288,13 @@ class ToolContact(EquationItem):
     def beyond_limits(self) -> ToolContact | None:
         """With the node on the axis joined to the next one, where there is an axis."""
         return None if self.axis is None or self.joined else replace(self, joined=True)
+
+    def lets_go(self, press: float) -> str:
+        """A pull by more than adhesion holds has no equilibrium, and none that has not pressed before holds any."""
+        held = self.punch.adhesion if self.pressed else 0.0
+        if press >= -held - ROUND_OFF * max(self.peak, held):
+            return ""
+        return f"the tool lets go of the tissue: it is pulled by more than {held:.4g} N, which is what adhesion holds"
 
     def is_sound(self, y: FloatArray) -> bool:
         """Whether the surface keeps out of the punch between its nodes, too; in axial symmetry only."""

@@ -130,6 +130,14 @@ def test_adhesion_holds_until_the_pull_is_too_much():
     assert weak[4] == pytest.approx(held[0], rel=1e-6)
 
 
+def test_a_pull_beyond_adhesion_ends_where_the_tool_lets_go():
+    """Newton's method looked for an equilibrium for minutes."""
+    solution = model(adhesion_force=0.05).run(press("force", 0.1, -0.051))
+    assert solution.failure.step == 2
+    assert -0.05 < solution.failure.reached < -0.049
+    assert "lets go of the tissue: it is pulled by more than 0.05 N" in solution.failure.reason
+
+
 def test_friction_lies_between_frictionless_and_stuck():
     load, frictional = press("depth", 2e-4, 4e-4), {"contact": "rigid_frictional", "friction_coefficient": 0.3}
     block, axial = (pressed.run(load) for pressed in both(**frictional))

@@ -1,5 +1,7 @@
 """A rigid punch with a rounded edge by real contact: force, depth, energy, friction, lift-off and adhesion."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -113,6 +115,16 @@ def test_a_pull_that_is_not_held_ends_with_the_last_good_state():
     assert not solution.complete
     assert solution.failure.step == 3
     assert len(solution.force) == 2
+    assert "lets go of the tissue: it is pulled by more than 0 N" in solution.failure.reason
+
+
+def test_a_pull_beyond_adhesion_ends_where_the_tool_lets_go_and_one_that_is_held_goes_on():
+    load = fem.Load("force", np.arange(1.0, 5.0), [0.1, 0.0, -0.049, 0.0])
+    assert model(adhesion_force=0.05).run(load).complete
+    solution = model(adhesion_force=0.05).run(replace(load, value=np.array([0.1, 0.0, -0.051, 0.0])))
+    assert solution.failure.step == 3
+    assert -0.05 < solution.failure.reached < -0.0495
+    assert "lets go of the tissue: it is pulled by more than 0.05 N" in solution.failure.reason
 
 
 def test_friction_lies_between_frictionless_and_stuck():

@@ -136,6 +136,15 @@ def test_touch_and_limits_are_those_of_how_far_nodes_are_inside():
     assert there.pressed
 
 
+def test_a_pull_is_held_by_adhesion_of_a_tool_that_pressed():
+    holds = replace(row((0, 1)), punch=Punch(5.0, 1.0, adhesion=2.0), peak=4.0)
+    assert "more than 0 N" in holds.lets_go(-1.0)
+    assert holds.lets_go(-1e-9) == holds.lets_go(0.0) == ""
+    pressed = replace(holds, pressed=True)
+    assert pressed.lets_go(-2.0) == pressed.lets_go(-2.0 - 1e-9) == ""
+    assert "more than 2 N" in pressed.lets_go(-2.1)
+
+
 def test_between_another_meshs_nodes_how_far_nodes_are_inside_is_linear():
     """In whatever order that mesh has its nodes; one that is deep inside tells nothing."""
     mine = row((0, 1))
