@@ -151,7 +151,10 @@ class FemModel:
 def mesh_error_words(found: fem.MeshError | None) -> str:
     """The discretisation error of a mesh in a sentence."""
     if found is None:
-        return "not estimated: there is no like mesh with larger elements that follows the press"
+        return (
+            "not estimated: there is no like mesh with larger elements that follows the press, or on it other errors "
+            "hide that of the edges"
+        )
     prescribed = "force" if found.quantity == "depth" else "depth"
     (scale, unit), (load_scale, load_unit) = UNITS[found.quantity], UNITS[prescribed]
     side = "large" if found.percent > 0.0 else "small"

@@ -106,7 +106,7 @@ def graded_line(breaks: tuple[float, ...], sizing: Sizing, density: float = 1.0)
     return np.concatenate(pieces)
 
 
-def every_second(lines: FloatArray, breaks: tuple[float, ...]) -> FloatArray:
+def every_second(lines: FloatArray, breaks: tuple[float, ...], sharp: tuple[float, ...] = ()) -> FloatArray:
     """Half the elements: every second grid line is left out, counted from both ends of each interval between breaks.
 
     Parameters
@@ -115,6 +115,8 @@ def every_second(lines: FloatArray, breaks: tuple[float, ...]) -> FloatArray:
         Positions (n,) in m, increasing.
     breaks
         Positions among them that stay. Of an odd number of elements the middle one stays whole.
+    sharp
+        Positions among the breaks whose neighbours stay as well.
     """
     ends = np.searchsorted(lines, np.array(breaks))
     kept = [ends[:1]]
@@ -123,7 +125,10 @@ def every_second(lines: FloatArray, breaks: tuple[float, ...]) -> FloatArray:
         left = start + 2 * np.arange(1, half + 1)
         right = end - 2 * np.arange((end - start + 1) // 2 - half)[::-1]
         kept.append(np.unique(np.concatenate((left, right))))
-    out: FloatArray = lines[np.concatenate(kept)]
+    places = np.searchsorted(lines, np.array(sharp, dtype=np.float64))
+    beside = np.concatenate((places - 1, places + 1))
+    kept.append(beside[(beside >= 0) & (beside < len(lines))])
+    out: FloatArray = lines[np.unique(np.concatenate(kept))]
     return out
 
 

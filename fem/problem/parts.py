@@ -185,10 +185,11 @@ class Discretisation:
         on the pressure field (see :func:`fem.assembly.elements.make_elements`); 0 gives the plain Q2/P1 element.
     edge
         How much larger than usual, 1 to 8, the elements are round the edge of a tool stuck to a first layer that is
-        not thin, in finite strain and axial symmetry: a little stiffer, but they fold later.
+        not thin, in finite strain and axial symmetry: a little stiffer, but they fold later. On a block only with
+        `halved`, which below 2 leaves the elements at a stuck edge and at a rim as they are.
     halved
-        Half as many elements in each direction, as two solutions need that tell the error of a mesh
-        (:func:`fem.estimate_mesh_error`).
+        Half as many elements in each direction, on a block as many round the axis, as two solutions need that tell the
+        error of a mesh (:func:`fem.estimate_mesh_error`).
     """
 
     density: Literal["coarse", "default", "fine"] = "default"

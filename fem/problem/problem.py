@@ -208,6 +208,11 @@ class Problem:
         return self.tool.contact in TOUCHING and self.kinematics == "finite" and self.support.kind != "plates"
 
     @property
+    def is_stuck(self) -> bool:
+        """Whether the surface is stuck, or kept level, up to a sharp edge."""
+        return self.tool.contact != "uniform_pressure" and not self.slides_on_plates and not self.touches
+
+    @property
     def slides_on_plates(self) -> bool:
         """Whether a cylinder's faces slide on the plates without friction."""
         return self.support.kind == "plates" and self.tool.contact == "rigid_frictionless"

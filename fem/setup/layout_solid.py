@@ -4,6 +4,10 @@ Radially and vertically as in :mod:`fem.setup.layout`, but coarser at the tool's
 dimensions, and round the tool few elements are enough. Under a tool that touches the lines gather where its rounded
 edge begins and ends, under a sphere at the axis.
 
+The mesh with half as many elements leaves out every second ring and row, but at the rim of a hole and at a stuck edge,
+which set the error, only if `discretisation.edge` is 2. Round the axis it has as many: an odd number there has no half,
+and with half of an even one the circles themselves would be others, which has nothing to do with that error.
+
 The mesh of a body bounded by a surface is made by :mod:`fem.mesh.surface.specimen`.
 """
 
@@ -33,6 +37,7 @@ TIED = Resolution(edge=0.04, under=1.0, growth=0.7)
 FINEST_EDGE, COARSEST_EDGE = 0.01, 0.05  # element size at the edge of a tool that touches, in tool radii
 UNDER, GROWTH = 1.0 / 12.0, 0.45  # largest element under a tool that touches, in tool radii, and growth from the edge
 VERTICAL_GROWTH = 0.7
+HALVED_TOO = 2.0  # factor on the size at an edge from which on half as many elements are half as many there as well
 INNER_SQUARE = 0.45  # half side over the radius of the innermost circle that is asked for
 THICKEST_RING = 1.4  # radius of the first circle over the half side, at least
 
@@ -53,7 +58,9 @@ def lay_out_block(problem: Problem) -> SolidMesh:
     vertical = Sizing((Feature(0.0, edge, VERTICAL_GROWTH, extent.far), *extent.vertical))
     depth_lines = graded_line(tuple(depths), vertical, density)
     if problem.discretisation.halved:
-        depth_lines = every_second(depth_lines, tuple(depths))
+        depth_lines = every_second(
+            depth_lines, tuple(depths), _kept(problem, 0.0, [f.position for f in extent.vertical])
+        )
     grid = _grid(problem, extent, resolution, density)
     return build_block(grid, depth_lines, depths[:-1], SOLID_ELEMENTS[ELEMENT].node_places, ELEMENT)
 
@@ -71,12 +78,11 @@ def _grid(problem: Problem, extent: Extent, resolution: Resolution, density: flo
     radius, (x, _) = problem.tool.radius, problem.tool.position
     rims = [f.position for f in extent.radial]
     _require_room(problem, rims, extent.radius)
-    halved = problem.discretisation.halved
-    pieces = PIECES[problem.discretisation.density] // (2 if halved else 1)
+    pieces = PIECES[problem.discretisation.density]
     smallest = pieces * resolution.edge / INNER_SQUARE
     inner = INNER_SQUARE * min([*rims, *(max(place, smallest) * radius for place in resolution.gather)])
     return DiscGrid(
-        rings=_rings(radius, inner, extent, resolution, density, halved),
+        rings=_rings(problem, inner, extent, resolution, density),
         pieces=pieces,
         quarters=1 if x == 0.0 and problem.tool.tilt == 0.0 else 2,
         centre=x,
@@ -86,17 +92,22 @@ def _grid(problem: Problem, extent: Extent, resolution: Resolution, density: flo
     )
 
 
-def _rings(
-    radius: float, inner: float, extent: Extent, resolution: Resolution, density: float, halved: bool
-) -> FloatArray:
+def _rings(problem: Problem, inner: float, extent: Extent, resolution: Resolution, density: float) -> FloatArray:
+    radius, rims = problem.tool.radius, [f.position for f in extent.radial]
     size = resolution.edge * radius
     edges = [Feature(place * radius, size, resolution.growth, extent.far) for place in resolution.gather]
     sizing = Sizing((*edges, *extent.radial), ((radius, resolution.under * radius),))
-    breaks = sorted({inner, radius, extent.radius, *(f.position for f in extent.radial)})
-    lines = graded_line(tuple(breaks), sizing, density)
-    lines = every_second(lines, tuple(breaks)) if halved else lines
+    breaks = tuple(sorted({inner, radius, extent.radius, *rims}))
+    lines = graded_line(breaks, sizing, density)
     kept: FloatArray = lines[(lines == inner) | (lines >= THICKEST_RING * inner)]
-    return kept
+    return every_second(kept, breaks, _kept(problem, radius, rims)) if problem.discretisation.halved else kept
+
+
+def _kept(problem: Problem, edge: float, rims: list[float]) -> tuple[float, ...]:
+    """Where a mesh with half as many elements has small ones: at the edge of a stuck tool and at the rim of a hole."""
+    if problem.discretisation.edge >= HALVED_TOO:
+        return ()
+    return (*([edge] if problem.is_stuck else []), *rims)
 
 
 def _require_room(problem: Problem, rims: list[float], border: float) -> None:

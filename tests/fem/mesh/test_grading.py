@@ -2,7 +2,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fem.mesh.grading import Feature, Sizing, graded_line
+from fem.mesh.grading import Feature, Sizing, every_second, graded_line
 
 lengths = st.floats(1e-4, 10.0)
 
@@ -39,3 +39,10 @@ def test_far_sizes_grow_by_one():
     feature = Feature(0.0, 0.1, 0.4, far=10.0)
     near, far = feature.size_at(np.array([10.0, 20.0]))
     assert far - near == 10.0
+
+
+def test_every_second_line_goes_but_beside_sharp_places():
+    line, breaks = np.arange(13.0), (0.0, 4.0, 12.0)
+    np.testing.assert_array_equal(every_second(line, breaks), np.arange(0.0, 13.0, 2.0))
+    np.testing.assert_array_equal(every_second(line, breaks, (4.0,)), [0, 2, 3, 4, 5, 6, 8, 10, 12])
+    np.testing.assert_array_equal(every_second(line, breaks, (0.0, 12.0)), [0, 1, 2, 4, 6, 8, 10, 11, 12])

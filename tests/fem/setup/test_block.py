@@ -1,5 +1,7 @@
 """The block against the axisymmetric solver, against itself moved and tilted, and as data for a file."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -120,6 +122,35 @@ def test_fields_are_whole_hexahedra():
     assert stress.shape == (len(fields.cells), 3, 3)
     np.testing.assert_allclose(stress, stress.swapaxes(1, 2), atol=1e-9 * np.abs(stress).max())
     assert np.abs(fields.det_F - 1.0).max() < 0.1
+
+
+@pytest.mark.parametrize("density", ["coarse", "default", "fine"])
+def test_half_as_many_elements_are_larger_at_rim_and_edge_only_if_wanted(density):
+    rim, edge = 0.02, 5e-3
+    problem = skin("rigid_bonded", "finite", support=fem.Support("hole", rim), density=density)
+    halves = (fem.Discretisation(density, halved=True, edge=factor) for factor in (1.0, 2.0))
+    own, beside, halved = (
+        fem.prepare(replace(problem, discretisation=each)).mesh for each in (problem.discretisation, *halves)
+    )
+    for mesh, least, most in ((beside, 0.999, 1.001), (halved, 1.8, 3.5)):
+        for place in (rim, edge):
+            growth = next_to(mesh, place) / next_to(own, place)
+            assert (least < growth).all()
+            assert (growth < most).all()
+        assert round_the(mesh, rim) == round_the(own, rim)
+        assert mesh.elements.shape[1] < 0.7 * own.elements.shape[1]
+
+
+def next_to(mesh, place):
+    """Widths of the elements inside and outside a circle."""
+    row = mesh.nodes[mesh.interfaces[0][::2], 0]
+    at = int(np.abs(row - place).argmin())
+    return np.array([row[at] - row[at - 1], row[at + 1] - row[at]])
+
+
+def round_the(mesh, radius):
+    """Nodes on a circle of the lower face."""
+    return int((mesh.base & (np.abs(mesh.specimen_distance - radius) < 1e-9)).sum())
 
 
 @pytest.mark.parametrize(
