@@ -148,7 +148,7 @@ def surrogate(
     Raises
     ------
     SolverError
-        The model does not follow the press to its depth.
+        The model does not follow the press to its depth, or only with a force that no curve goes through: a law locks.
     InputError
         It does not cover the set-up.
     """
@@ -170,6 +170,8 @@ def surrogate(
     force = np.asarray(CubicSpline(ramp.depth, ramp.force)(grid))
     at_edge = 0.0 if ramp.at_edge is None else np.interp(grid, ramp.depth, ramp.at_edge)
     rings = _rings(press, ramp, chains, len(parameters))
+    if not (np.isfinite(force).all() and np.isfinite(by).all() and force[1:].min() > 0.0):
+        raise SolverError(f"the force of {press.setup[0].name!r} does not go smoothly with the depth at these values")
     return PressSurrogate(grid, force, by, layers, vector.copy(), ramp.mesh_error, at_edge, *rings)
 
 
