@@ -31,7 +31,7 @@ AXES = "xyz"
 OGDEN_TERMS = 6
 OPTIONS = (
     "analysis time_steps step_size title solver time_stepper optimize_bw plot_level plot_range plot_stride "
-    "plot_zero_state output_level output_stride print_level"
+    "plot_zero_state output_level output_stride print_level adaptor_re_solve"
 )
 SECTIONS: Mapping[str, str | None] = MappingProxyType(
     {

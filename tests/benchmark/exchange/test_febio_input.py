@@ -211,7 +211,8 @@ def test_what_does_not_act_is_passed_over(tmp_path):
     more = "<Globals><Constants><T>0</T></Constants></Globals><Output><plotfile/></Output>"
     content = text(NEO_HOOKEAN.replace("<E>", "<density>1</density><E>"), extra=more).replace(
         "</Control>",
-        '<analysis>STATIC</analysis><title>a</title><time_stepper><dtmax lc="1">1</dtmax></time_stepper>'
+        "<analysis>STATIC</analysis><adaptor_re_solve>1</adaptor_re_solve>"
+        '<time_stepper><dtmax lc="1">1</dtmax></time_stepper>'
         '<solver type="solid"><dtol>0.1</dtol></solver></Control>',
     )
     content = content.replace("<SolidDomain", '<SolidDomain type="elastic-solid" elem_type="HEX8G8"')
