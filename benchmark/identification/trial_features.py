@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmark.identification.trial_data import TrialData
 from benchmark.response.force_curve import Array
@@ -26,8 +27,8 @@ LEAST_EVIDENCE = 5.0
 LEAST_TRAVEL = 1e-6
 """A trial whose depth stays within this range (m) has no motion."""
 ONSETS = 41
-END_ROWS = 0.05
-"""Share of the rows that count as the shallowest, and as the deepest."""
+END_ROWS, END_TRAVEL = 0.05, 0.02
+"""Share of the rows that are the shallowest, and the deepest; and of the travel, within which the former are."""
 
 
 @dataclass(frozen=True)
@@ -99,7 +100,7 @@ def contact_range(depth: Array, force: Array) -> ContactRange:
     depth, force : (n,)
         m and N.
     """
-    shallow = depth <= np.quantile(depth, 0.05)
+    shallow = _shallowest(depth)
     calm = without_spikes(force)
     level, peak = float(np.median(force[shallow])), int(np.argmax(calm))
     rise = float(calm[peak] - level)
@@ -111,6 +112,15 @@ def contact_range(depth: Array, force: Array) -> ContactRange:
     high = max(risen, float(depth[late]) if late else risen, low + 1e-3 * travel(depth))
     margin = max(margin, np.finfo(float).tiny)
     return ContactRange(low, high, float(np.median(depth[shallow])), level - 2.0 * margin, level + 2.0 * margin)
+
+
+def _shallowest(depth: Array) -> NDArray[np.bool_]:
+    """(n,) the shallowest rows: `END_ROWS` of them, and none far above the least depth (n,), m.
+
+    Of a record that begins at the touch and holds for long these would else be the whole way down.
+    """
+    ends = np.quantile(depth, END_ROWS), depth.min() + END_TRAVEL * travel(depth)
+    return np.asarray(depth <= min(ends))
 
 
 def _left(loading: Array, force: float) -> int:
@@ -187,7 +197,7 @@ def evidence_of_rise(depth: Array, force: Array) -> float:
     length, or the scatter of the force where the trial is least deep, which shows a drift. 0 where it does not rise.
     """
     calm = without_spikes(force)
-    shallow, deep = depth <= np.quantile(depth, END_ROWS), depth >= np.quantile(depth, 1.0 - END_ROWS)
+    shallow, deep = _shallowest(depth), depth >= np.quantile(depth, 1.0 - END_ROWS)
     rise = float(np.median(calm[deep]) - np.median(calm[shallow]))
     steps = np.abs(np.diff(force))
     count = float(steps[steps > 0.0].min(initial=np.inf))

@@ -25,6 +25,20 @@ def test_the_true_onset_and_zero_lie_in_the_range(trial, onset, noise):
     assert allowed.rest_low < 0.01 < allowed.rest_high
 
 
+@pytest.mark.parametrize("noise", [0.0, 0.002])
+def test_of_a_ramp_from_the_touch_and_a_long_hold_the_ramp_is_not_taken_for_air(trial, noise):
+    """One row in twenty were all of the ramp: half of the peak was the level in the air, and no contact in the range."""
+    made = trial(noise=noise)
+    way = np.linspace(0.0, made.depth.max(), 15)
+    depth = np.concatenate([way, np.full(285, way[-1])])
+    force = made.curve(depth) + noise * made.force.max() * np.random.default_rng(4).normal(size=depth.size)
+    allowed = contact_range(depth, force)
+    assert allowed.low < 0.0 < allowed.high
+    assert allowed.rest_low < 0.0 < allowed.rest_high
+    held = replace(made, time=0.035 * np.arange(depth.size), depth=depth, force=force)
+    assert find_start(held, allowed).stiffness == pytest.approx(1.0, rel=0.02)
+
+
 def test_quiet_data_bound_the_onset_tightly(trial):
     made = trial(onset=1e-3)
     assert contact_range(made.depth, made.force).high - 1e-3 < 3e-4
