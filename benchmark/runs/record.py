@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -124,6 +124,13 @@ class RunRecord:
             return ()
         fem, wave = (self.deflections(run.result) for run in (self.pair.fem, self.pair.wave))
         return tuple(beside(self.bands, self.layers, fem, wave, int(np.abs(self.load).argmax())))
+
+    def max_deformation(self, result: ModelResult | None) -> Array:
+        """(L,) m: each layer's deflection of largest magnitude over the steps that all models reached; NaN of none."""
+        if result is None:
+            return np.full(len(self.layers), np.nan)
+        reached = min((each.time.size for each in self.results if each.time.size), default=0)
+        return np.asarray(replace(result, top_deflection=result.top_deflection[:reached]).max_deformation())
 
     def deflections(self, result: ModelResult | None) -> Array:
         """(n, L) m of one model over all steps; NaN where there is no value."""

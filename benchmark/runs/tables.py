@@ -131,10 +131,7 @@ def tissue_columns(records: Mapping[str, RunRecord]) -> Columns:
 
 def _tissue_rows(name: str, record: RunRecord) -> list[tuple[Any, ...]]:
     errors = percent_errors(record)[int(np.abs(record.load).argmax())]
-    fem, wave = (
-        np.full(len(record.layers), np.nan) if run.result is None else MM * run.result.max_deformation()
-        for run in (record.pair.fem, record.pair.wave)
-    )
+    fem, wave = (MM * record.max_deformation(run.result) for run in (record.pair.fem, record.pair.wave))
     return [
         (
             name,

@@ -54,9 +54,9 @@ class ModelProcess:
         start_child(self._process)
         far_end.close()
 
-    def command(self, *, keep_result: bool) -> None:
+    def command(self, *, keep_result: bool, steps: int | None = None) -> None:
         """Start one execution; its messages arrive on `connection`."""
-        self.connection.send(RunCommand(keep_result))
+        self.connection.send(RunCommand(keep_result, steps))
 
     def receive(self) -> Message:
         """Return the next message; a crash of the model is raised as the error it is.

@@ -180,7 +180,7 @@ def run_side_by_side(
             for model, core in zip(MODELS, cores(len(MODELS)), strict=True)
             if model == "wave" or own.reference is None
         ]
-        first = _together(processes, on_progress, on_remark)
+        first = _at_one_load(processes, _together(processes, on_progress, on_remark))
         repeated = _in_turn(processes, first, repeats)
     fem, wave = (_model_run(model, first.get(model), repeated.get(model, []), own) for model in MODELS)
     ratio = speedup(fem.repeats, wave.repeats, seed=seed) if fem.repeats and wave.repeats else None
@@ -205,6 +205,26 @@ def _together(processes: list[ModelProcess], on_progress: OnProgress, on_remark:
                 answers[process.model] = message
                 del waiting[connection]  # type: ignore[arg-type]
     return answers
+
+
+def _at_one_load(processes: list[ModelProcess], first: Mapping[str, Answer]) -> dict[str, Answer]:
+    """The answers, the wave's profile read at the last step of finite elements that stopped early.
+
+    Two profiles at the loads that each came to are no comparison.
+    """
+    fem, wave = (first.get(model) for model in ("fem", "wave"))
+    if not (isinstance(fem, Finished) and isinstance(wave, Finished) and fem.result and wave.result):
+        return dict(first)
+    reached = fem.result.time.size
+    if not 0 < reached < wave.result.time.size:
+        return dict(first)
+    process = next(each for each in processes if each.model == "wave")
+    process.command(keep_result=True, steps=reached)
+    short = process.answer()
+    if not isinstance(short, Finished) or short.result is None:
+        return dict(first)
+    there = replace(wave.result, profile=short.result.profile, peak_step=short.result.peak_step)
+    return {**first, "wave": replace(wave, result=there)}
 
 
 def _in_turn(processes: list[ModelProcess], first: Mapping[str, Answer], repeats: int) -> dict[str, list[Finished]]:

@@ -16,6 +16,7 @@ from benchmark.errors import InputError
 from benchmark.files import Scenario
 from benchmark.model_file import RepairedModel
 from benchmark.models import (
+    Drive,
     Keeping,
     ModelResult,
     StepProgress,
@@ -30,9 +31,10 @@ from benchmark.response.model_with_effects import prepare_with_effects
 
 @dataclass(frozen=True)
 class RunCommand:
-    """Set the model up and follow the load history; `keep_result` False is a timed repeat."""
+    """Set the model up and follow the load history, or so many steps of it; `keep_result` False is a timed repeat."""
 
     keep_result: bool
+    steps: int | None = None
 
 
 @dataclass(frozen=True)
@@ -150,7 +152,8 @@ def _run(connection: Connection, command: RunCommand, job: ModelJob) -> Finished
     def say(text: str) -> None:
         connection.send(Remark(text))
 
-    drive = scenario_drive(job.scenario)
+    whole = scenario_drive(job.scenario)
+    drive = Drive(whole.control, whole.time[: command.steps], whole.value[: command.steps])
     keeping = Keeping(job.keep, say) if command.keep_result and job.keep is not None else None
     started = time.perf_counter()
     prepared = prepare_with_effects(

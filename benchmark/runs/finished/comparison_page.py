@@ -57,10 +57,7 @@ def _rows(name: str, run: SavedRun) -> Iterator[dict[str, Any]]:
     record = run.record
     errors, comparisons = peak_errors(record), {each.layer: each for each in record.comparisons}
     fem, wave = record.pair.fem, record.pair.wave
-    largest = [
-        np.full(len(record.layers), np.nan) if each.result is None else MM * each.result.max_deformation()
-        for each in (fem, wave)
-    ]
+    largest = [MM * record.max_deformation(each.result) for each in (fem, wave)]
     for place, layer in enumerate(record.layers):
         found = comparisons.get(layer)
         statistics = None if found is None else found.statistics

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from benchmark.comparison import LayerComparison, ProfileError, profile_error
-from benchmark.models import Array
+from benchmark.comparison import LayerComparison
 from benchmark.runs.record import RunRecord
-from benchmark.runs.report.values import MM, fem_mm, pair_names, peak_errors, profile_mm, wave_mm
+from benchmark.runs.report.values import MM, fem_mm, pair_names, peak_errors, profile_errors, profile_mm, wave_mm
 from benchmark.runs.tables import percent_errors
 from benchmark.side_by_side.parameter_bands import ParameterBands
 from reports import Block, Column, Download, Figure, Notice, Section, Table
@@ -78,7 +77,11 @@ def _table(record: RunRecord) -> Table:
     )
     errors = peak_errors(record)
     comparisons = {comparison.layer: comparison for comparison in record.comparisons}
-    rows = [_row(record, column, name, errors, comparisons) for column, name in enumerate(record.layers)]
+    profiles = profile_errors(record)
+    rows = [
+        (*_row(record, column, name, errors, comparisons), profiles.get(name))
+        for column, name in enumerate(record.layers)
+    ]
     return Table(
         "Maximum deformation of each layer's top face on the tool axis",
         columns,
@@ -96,23 +99,14 @@ def _row(
 ) -> tuple[object, ...]:
     fem, wave = record.pair.fem.result, record.pair.wave.result
     comparison = comparisons.get(name)
-    whole = None
-    if fem is not None and wave is not None and fem.time.size and wave.time.size:
-        whole = _profile_error(fem.profile[column], wave.profile[column])
     return (
         name,
-        None if fem is None else MM * fem.max_deformation()[column],
-        None if wave is None else MM * wave.max_deformation()[column],
+        None if fem is None else MM * record.max_deformation(fem)[column],
+        None if wave is None else MM * record.max_deformation(wave)[column],
         errors.get(name),
         comparison.percent.mean if comparison and wave is not None else None,
         comparison.percent.maximum if comparison and wave is not None else None,
-        None if whole is None else whole.maximum_percent,
     )
-
-
-def _profile_error(fem: Array, wave: Array) -> ProfileError | None:
-    """None where the two profiles have no common point, as with a table in a model's place."""
-    return profile_error(fem, wave) if np.isfinite(fem + wave).any() else None
 
 
 def _force_depth(record: RunRecord) -> Block:

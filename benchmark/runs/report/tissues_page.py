@@ -45,7 +45,7 @@ def _verdict(records: Mapping[str, RunRecord]) -> Verdict:
 
 def _surface(record: RunRecord) -> str:
     found = [
-        f"{run.name} {1e3 * run.result.max_deformation()[0]:.4g} mm"
+        f"{run.name} {1e3 * record.max_deformation(run.result)[0]:.4g} mm"
         for run in (record.pair.fem, record.pair.wave)
         if run.result is not None
     ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from benchmark.comparison import profile_error
 from benchmark.identification import SessionFit, SheetFit
 from benchmark.identification.pooling import counted_trials
 from benchmark.models import Array, ModelResult
@@ -66,6 +67,16 @@ def largest_errors(record: RunRecord) -> dict[str, float]:
         for name, (fem, wave) in record.answers.items()
     }
     return {name: float(np.nanmax(np.abs(each))) for name, each in errors.items() if not np.isnan(each).all()}
+
+
+def profile_errors(record: RunRecord) -> dict[str, float]:
+    """Largest difference of the profiles at peak load, % of the FEM's largest there, by layer that both have."""
+    fem, wave = record.pair.fem.result, record.pair.wave.result
+    if fem is None or wave is None or not (fem.time.size and wave.time.size) or fem.peak_step != wave.peak_step:
+        return {}
+    pairs = {name: (fem.profile[k], wave.profile[k]) for k, name in enumerate(record.layers)}
+    told = {name: pair for name, pair in pairs.items() if np.isfinite(sum(pair)).any() and np.any(pair[0])}
+    return {name: profile_error(*pair).maximum_percent for name, pair in told.items()}
 
 
 def _errors(fem: Array, wave: Array, size: Array) -> Array:

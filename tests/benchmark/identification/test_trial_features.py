@@ -27,7 +27,7 @@ def test_the_true_onset_and_zero_lie_in_the_range(trial, onset, noise):
 
 @pytest.mark.parametrize("noise", [0.0, 0.002])
 def test_of_a_ramp_from_the_touch_and_a_long_hold_the_ramp_is_not_taken_for_air(trial, noise):
-    """One row in twenty were all of the ramp: half of the peak was the level in the air, and no contact in the range."""
+    """One row in twenty were all of the ramp: half of the peak was the level in air, and no contact in the range."""
     made = trial(noise=noise)
     way = np.linspace(0.0, made.depth.max(), 15)
     depth = np.concatenate([way, np.full(285, way[-1])])

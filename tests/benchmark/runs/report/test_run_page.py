@@ -24,12 +24,12 @@ def finished(in_threads: None) -> RunRecord:
     return run_scenario(load_scenario("skin-5N", QUICK), RunOptions(repeats=1), Console(quiet=True))
 
 
-def _with_wave(record: RunRecord, factor: np.ndarray) -> RunRecord:
-    """The record with a wave of `factor` (n,) times the FEM's deflections."""
+def _with_wave(record: RunRecord, factor: np.ndarray, beside: float = 1.0) -> RunRecord:
+    """The record with a wave of `factor` (n,) times the FEM's deflections, and `beside` times its profile."""
     fem, wave = record.pair.fem.result, record.pair.wave.result
     assert fem is not None
     assert wave is not None
-    made = replace(wave, top_deflection=fem.top_deflection * factor[:, None])
+    made = replace(wave, top_deflection=fem.top_deflection * factor[:, None], profile=beside * fem.profile)
     pair = replace(record.pair, wave=replace(record.pair.wave, result=made))
     tops = (fem.top_deflection, made.top_deflection)
     return replace(record, pair=pair, comparisons=compare_layers(record.scenario, record.load, *tops))
@@ -46,6 +46,25 @@ def test_errors_that_cancel_over_a_cycle_are_not_called_good(finished: RunRecord
 def test_agreement_at_the_peak_too_is_good(finished: RunRecord) -> None:
     verdict = run_verdict(_with_wave(finished, 1.0 + 1e-3 * np.sin(np.arange(20.0))))
     assert verdict.status == "good"
+
+
+@pytest.mark.parametrize(("beside", "status"), [(1.03, "good"), (1.05, "finding"), (0.5, "finding")])
+def test_a_profile_that_is_off_beside_right_maxima_is_not_called_good(finished: RunRecord, beside, status) -> None:
+    """Half of the FEM's deflection everywhere but on the axis had a green verdict."""
+    verdict = run_verdict(_with_wave(finished, np.full(20, 1.001), beside))
+    assert verdict.status == status
+    assert ("beside the axis the wave model's profile is off by up to" in verdict.headline) == (status != "good")
+
+
+def test_maxima_of_models_that_came_to_unlike_loads_are_those_of_the_steps_that_both_reached(finished) -> None:
+    """A FEM that stopped at two thirds of the load had its maximum beside the wave's at the whole."""
+    fem, wave = finished.pair.fem.result, finished.pair.wave.result
+    cut = {name: getattr(fem, name)[:5] for name in ("time", "force", "depth", "top_deflection")}
+    short = replace(finished, pair=replace(finished.pair, fem=replace(finished.pair.fem, result=replace(fem, **cut))))
+    expected = np.abs(wave.top_deflection[:5]).max(axis=0)
+    np.testing.assert_allclose(np.abs(short.max_deformation(wave)), expected)
+    assert expected[0] < np.abs(wave.top_deflection).max()
+    assert np.isnan(short.max_deformation(None)).all()
 
 
 def test_a_model_that_is_off_throughout_is_told_by_layers(finished: RunRecord) -> None:
@@ -77,7 +96,8 @@ def _by_depth(record: RunRecord, factor: float) -> RunRecord:
     fem, wave = record.pair.fem.result, record.pair.wave.result
     assert fem is not None
     assert wave is not None
-    made = replace(wave, top_deflection=fem.top_deflection, depth=fem.depth, force=factor * fem.force)
+    same_faces = {"top_deflection": fem.top_deflection, "profile": fem.profile, "depth": fem.depth}
+    made = replace(wave, **same_faces, force=factor * fem.force)
     pair = replace(record.pair, wave=replace(record.pair.wave, result=made))
     load = record.scenario.load.model_copy(update={"control": "depth", "peak": float(np.abs(fem.depth).max())})
     scenario = record.scenario.model_copy(update={"load": load})
