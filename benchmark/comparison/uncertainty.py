@@ -162,8 +162,11 @@ class Validation(Result):
         )
 
 
-def replicate_uncertainty(values: Sequence[float]) -> float | None:
+def replicate_uncertainty(values: Sequence[float], conditions: Sequence[str] | None = None) -> float | None:
     """u_D of the mean of replicate trials: standard deviation (n - 1) over root n; None with fewer than two.
+
+    Of several conditions, of each trial in `conditions`, their mean's: what they differ by is no scatter. Those with
+    one trial are taken to scatter as the others do; None where none has two.
 
     Raises
     ------
@@ -173,9 +176,16 @@ def replicate_uncertainty(values: Sequence[float]) -> float | None:
     found = np.asarray(values, dtype=float)
     if not np.isfinite(found).all():
         raise ComparisonError(f"replicates {list(values)}: all must be finite")
-    return float(np.std(found, ddof=1) / math.sqrt(found.size)) if found.size > 1 else None
+    names = np.zeros(found.size) if conditions is None else np.array(conditions)
+    left = found - np.array([found[names == name].mean() for name in names])
+    freedom = found.size - np.unique(names).size
+    return float(np.sqrt(left @ left / freedom / found.size)) if freedom > 0 else None
 
 
-def input_uncertainty(sensitivity: float, ci95: tuple[float, float]) -> float:
-    """u_input of one parameter: |dS/dp| times the standard uncertainty of its 95 % interval (half-width / 1.96)."""
-    return abs(sensitivity) * 0.5 * abs(ci95[1] - ci95[0]) / NORMAL_95
+def input_uncertainty(sensitivity: float, ci95: tuple[float, float], freedom: int | None = None) -> float:
+    """u_input of one parameter: |dS/dp| times the standard uncertainty of its 95 % interval.
+
+    That is its half-width over the quantile: Student's for the degrees of freedom it was made with, or 1.96.
+    """
+    quantile = NORMAL_95 if freedom is None else float(scipy.stats.t.ppf(0.975, freedom))
+    return abs(sensitivity) * 0.5 * abs(ci95[1] - ci95[0]) / quantile

@@ -286,6 +286,9 @@ def _refined(result: ResultFolder) -> Iterator[Evidence]:
         yield Evidence("refinement", says, result.file("tables/validation.csv"))
 
 
+CONDITIONS = "tables/validation_conditions.csv"
+
+
 def _against_trials(result: ResultFolder, limits: tuple[str, ...]) -> Iterator[Evidence]:
     """Error and uncertainty of ASME V&V 20 for each model and protocol."""
     table, source = result.table("tables/validation.csv"), result.file("tables/validation.csv")
@@ -307,6 +310,20 @@ def _against_trials(result: ResultFolder, limits: tuple[str, ...]) -> Iterator[E
         if not fitted:
             says = f"{model}, {quantity} of each trial by the stiffness of the others: E {error:.3g} {unit}."
             yield Evidence("unseen", says, source, limits)
+    yield from _by_condition(result, limits)
+
+
+def _by_condition(result: ResultFolder, limits: tuple[str, ...]) -> Iterator[Evidence]:
+    """Conditions whose mean peak force a model misses by more than two u_val, which the mean of all hides."""
+    table, source = result.table(CONDITIONS), result.file(CONDITIONS)
+    if table is None:
+        return
+    for row in table.to_dict("records"):
+        error, uncertainty, data = (float(row[name]) for name in ("E_N", "u_val_N", "D_N"))
+        if abs(error) > 2 * uncertainty > 0.0:
+            who = f"{row['simulation']}, peak force of {row['condition']} ({row['protocol']})"
+            says = f"{who}: {100.0 * error / data:+.2g} % off, |E| is {abs(error) / uncertainty:.2g} u_val."
+            yield Evidence("agreement", says, source, (*limits, AGAINST))
 
 
 READERS: Final[Mapping[str, Callable[[ResultFolder], Iterator[Evidence]]]] = {

@@ -13,7 +13,7 @@ from benchmark.models import Array, ModelResult
 from benchmark.runs.record import RunRecord, whole
 from benchmark.runs.trials.film_tables import circles, marker_fits
 from benchmark.runs.trials.measured import MeasuredComparison
-from benchmark.runs.validation import mesh_error_entry, refinement_columns, validation_columns
+from benchmark.runs.validation import condition_columns, mesh_error_entry, refinement_columns, validation_columns
 from benchmark.side_by_side import SideBySide
 from benchmark.side_by_side.parameter_bands import ParameterBands
 
@@ -43,6 +43,9 @@ def run_tables(record: RunRecord) -> dict[str, Columns]:
     checked = validation_columns(record, record.levels)
     if checked is not None:
         tables["validation.csv"] = checked
+    by_condition = condition_columns(record)
+    if by_condition is not None:
+        tables["validation_conditions.csv"] = by_condition
     if record.levels:
         tables["refinement.csv"] = refinement_columns(record.levels)
     return tables

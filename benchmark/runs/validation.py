@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 Columns = dict[str, list[Any]]
 Row = tuple[str, str, str, str, float | str | None, str]
 NAMES = ("quantity", "protocol", "simulation", "measure", "value", "unit")
+BY_CONDITION = (
+    "condition", "protocol", "simulation", "trials", "D_N", "E_N", "u_num_N", "u_input_N", "u_D_N", "u_val_N",
+)  # fmt: skip
 LEVELS = (
     "model", "refined", "level", "unknowns", "load_steps", "setup_s", "wall_s", "cpu_s", "wall_per_step_ms", "layer",
     "max_mm",
@@ -109,24 +112,66 @@ def _numerical(record: RunRecord, levels: tuple[Level, ...]) -> Iterator[Row]:
 
 def _measured(record: RunRecord, measured: MeasuredComparison, levels: tuple[Level, ...]) -> Iterator[Row]:
     """Peak force of the trials: each model's against the measured, at the instant of the trial's own peak."""
-    trials, stiffness = measured.trials, measured.fit.stiffness
+    every = range(len(measured.trials))
+    for protocol, run, data, model in _peaks(record, measured):
+        yield from _told("peak force", protocol, run.key, _check(measured, run, levels, data, model, every), "N")
+        for measure, _, _, value in area_metric(data, model).rows():
+            yield "peak force", protocol, run.key, measure, value, "N"
+
+
+def condition_columns(record: RunRecord) -> Columns | None:
+    """Columns of `validation_conditions.csv`: one row a protocol, model and condition; None with one condition."""
+    measured, rows = record.measured, []
+    names = [] if measured is None else list(dict.fromkeys(trial.condition for trial in measured.trials))
+    if measured is None or len(names) < 2:
+        return None
+    for protocol, run, data, model in _peaks(record, measured):
+        for name in names:
+            at = [k for k, trial in enumerate(measured.trials) if trial.condition == name]
+            found = _check(measured, run, record.levels, data, model, at)
+            parts = (found.numerical, found.inputs, found.measured)
+            rows.append((name, protocol, run.key, len(at), found.data, found.error, *parts, found.uncertainty))
+    return {column: [row[place] for row in rows] for place, column in enumerate(BY_CONDITION)}
+
+
+def furthest_off(columns: Mapping[str, Sequence[Any]], least: float) -> tuple[str, float, float] | None:
+    """The condition that speaks most against the finite elements fitted to it: name, E over D, and |E| over u_val.
+
+    Of `condition_columns`: by more than two u_val, and a share `least` of D; None where none does.
+    """
+    rows = zip(*(columns[name] for name in ("condition", "simulation", "D_N", "E_N", "u_D_N", "u_val_N")), strict=True)
+    found = [
+        (str(name), float(error) / float(data), abs(float(error)) / float(uncertainty))
+        for name, model, data, error, scatter, uncertainty in rows
+        if model == "fem" and scatter not in (None, "") and abs(float(error)) > 2.0 * float(uncertainty) > 0.0
+    ]
+    return max((one for one in found if abs(one[1]) > least), key=lambda one: one[2], default=None)
+
+
+def _peaks(record: RunRecord, measured: MeasuredComparison) -> Iterator[tuple[str, ModelRun, Array, Array]]:
+    """Protocol, model, and (R,) measured and simulated peak forces, N."""
+    trials = measured.trials
     peaks = [int(trial.force.argmax()) for trial in trials]
     data = np.array([trial.force[at] for trial, at in zip(trials, peaks, strict=True)])
     for protocol, run, answers in _answers(record, trials):
         if any(each is None for each in answers):
             continue
         model = np.array([each[at] for each, at in zip(answers, peaks, strict=True) if each is not None])
-        if not np.isfinite(model).all():
-            continue
-        force = float(model.mean())
-        inputs = input_uncertainty(force / stiffness.value, (stiffness.ci95_low, stiffness.ci95_high))
-        scatter = replicate_uncertainty([float(each) for each in data - model])
-        numerical = _relative_numerical(run, levels)
-        share = None if numerical is None else numerical * force
-        found = Validation(force, float(data.mean()), share, inputs, scatter)
-        yield from _told("peak force", protocol, run.key, found, "N")
-        for measure, _, _, value in area_metric(data, model).rows():
-            yield "peak force", protocol, run.key, measure, value, "N"
+        if np.isfinite(model).all():
+            yield protocol, run, data, model
+
+
+def _check(
+    measured: MeasuredComparison, run: ModelRun, levels: tuple[Level, ...], data: Array, model: Array, of: Sequence[int]
+) -> Validation:
+    """Error and uncertainties of a model's mean peak force over some trials."""
+    at = list(of)
+    stiffness, force = measured.fit.stiffness, float(model[at].mean())
+    freedom = stiffness.trials - 1 if stiffness.log_std is not None and stiffness.trials > 1 else None
+    inputs = input_uncertainty(force / stiffness.value, (stiffness.ci95_low, stiffness.ci95_high), freedom)
+    scatter = replicate_uncertainty((data - model)[at].tolist(), [measured.trials[k].condition for k in at])
+    numerical = _relative_numerical(run, levels)
+    return Validation(force, float(data[at].mean()), None if numerical is None else numerical * force, inputs, scatter)
 
 
 def _relative_numerical(run: ModelRun, levels: tuple[Level, ...]) -> float | None:

@@ -143,7 +143,7 @@ def _models(run: SavedRun) -> str:
 def _verdict(runs: Mapping[str, SavedRun], changed: Columns) -> Verdict:
     """How much differs, and what each run found by itself."""
     points = [
-        f"{name}: {run_verdict(run.record, None if run.trials is None else run.trials.headline).headline}"
+        f"{name}: {run_verdict(run.record, None if run.trials is None else run.trials.headline, run.columns).headline}"
         for name, run in runs.items()
     ]
     status = "finding" if all(run.record.complete for run in runs.values()) else "incomplete"

@@ -18,7 +18,7 @@ from benchmark.models import Array, ModelResult, RunFailure, scenario_drive
 from benchmark.runs.finished.saved_tables import FROM_MM, SavedTables, Table, saved_trials
 from benchmark.runs.output.document import SCHEMA
 from benchmark.runs.record import RunRecord, compare_layers
-from benchmark.runs.report.run_page import REFINEMENT, VALIDATION
+from benchmark.runs.report.run_page import CONDITIONS, REFINEMENT, VALIDATION
 from benchmark.runs.report.trials_section import TrialsPart
 from benchmark.side_by_side import NAMES, ModelRun, Seconds, SideBySide, speedup
 
@@ -77,7 +77,7 @@ def read_run(folder: Path) -> SavedRun:
             f"{folder}: its files do not belong together ({type(error).__name__}: {error}); needed: the untouched "
             "result of a run"
         ) from None
-    columns = {name: tables.read(name).plain() for name in (VALIDATION, REFINEMENT) if tables.has(name)}
+    columns = {name: tables.read(name).plain() for name in (VALIDATION, CONDITIONS, REFINEMENT) if tables.has(name)}
     return SavedRun(folder, record, document, environment, tables.texts(), trials, columns)
 
 

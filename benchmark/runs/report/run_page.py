@@ -28,17 +28,20 @@ from benchmark.runs.report.values import (
     times_words,
 )
 from benchmark.runs.scenario_run import SMALL_STRAIN
+from benchmark.runs.validation import furthest_off
 from reports import Block, Download, Fact, KeyFigure, Notice, Page, Section, Verdict
 
 
-def run_verdict(record: RunRecord, fit: str | None = None) -> Verdict:
-    """Return the verdict of a run; `fit` is what its trials told, in one sentence."""
+def run_verdict(
+    record: RunRecord, fit: str | None = None, columns: Mapping[str, Columns] = MappingProxyType({})
+) -> Verdict:
+    """Return the verdict of a run; `fit` is what its trials told, in one sentence, `columns` its tables'."""
     if not record.complete:
         stops = [str(result.failure) for result in record.results if result.failure is not None]
         return Verdict("incomplete", "A solver stopped before the end of the load history.", stops)
     if record.pair.fem.result is None or record.pair.wave.result is None:
         return _one_sided(record, fit)
-    return _agreement(record, fit)
+    return _agreement(record, fit, columns.get(CONDITIONS))
 
 
 def _one_sided(record: RunRecord, fit: str | None) -> Verdict:
@@ -52,7 +55,7 @@ def _one_sided(record: RunRecord, fit: str | None) -> Verdict:
     return Verdict("finding", sentence(fit), points)
 
 
-def _agreement(record: RunRecord, fit: str | None) -> Verdict:
+def _agreement(record: RunRecord, fit: str | None, conditions: Columns | None) -> Verdict:
     """Whether equivalence is shown, where both models have values."""
     errors = peak_errors(record)
     wave, fem = record.pair.wave.name, record.pair.fem.name
@@ -67,10 +70,12 @@ def _agreement(record: RunRecord, fit: str | None) -> Verdict:
     points.extend([result.notes[SMALL_STRAIN]] if result is not None and SMALL_STRAIN in result.notes else [])
     points.extend([] if fit is None else [fit])
     points.extend(one.text for one in record.beside)
-    return _equivalence(record, errors, points)
+    return _equivalence(record, errors, points, conditions)
 
 
-def _equivalence(record: RunRecord, errors: Mapping[str, float], points: Sequence[str]) -> Verdict:
+def _equivalence(
+    record: RunRecord, errors: Mapping[str, float], points: Sequence[str], conditions: Columns | None
+) -> Verdict:
     """What is equivalent, on average and, by `errors` at peak load and the largest of any step, throughout."""
     share = 100 * record.scenario.comparison.equivalence_margin
     margin, wave = f"{share:g} % of the FEM's mean", record.pair.wave.name
@@ -90,22 +95,31 @@ def _equivalence(record: RunRecord, errors: Mapping[str, float], points: Sequenc
         return Verdict("finding", f"Equivalence within {margin} is not shown in {' and '.join(parts)}; {off}.", points)
     what = "every layer's maximum deformation" if record.force_comparison is None else "force and maximum deformations"
     headline = f"{wave} and {record.pair.fem.name} are equivalent within {margin} in {what}"
-    shape = max(profile_errors(record).items(), key=lambda item: item[1], default=("", 0.0))
+    aside = _aside(record, worst, stray, conditions)
+    return Verdict("finding" if aside else "good", sentence(f"{headline}{aside}"), points)
+
+
+def _aside(record: RunRecord, worst: float, stray: tuple[str, float], conditions: Columns | None) -> str:
+    """What speaks against models that are equivalent in the mean; empty where nothing does."""
+    share, wave = 100 * record.scenario.comparison.equivalence_margin, record.pair.wave.name
+    average, largest = " on average over the load history, but", "of the largest value"
     if abs(worst) > share:
-        aside = f"at peak load the {wave} is off by up to {worst:+.1f} %"
-    elif stray[1] > share:
-        aside = f"in single steps the {wave} is off by up to {stray[1]:.1f} % of the largest value ({stray[0]})"
-    elif shape[1] > PROFILE_SHARES * share:
-        aside = f"beside the axis the {wave}'s profile is off by up to {shape[1]:.1f} % of its peak ({shape[0]})"
-        return Verdict("finding", sentence(f"{headline}, but {aside}"), points)
-    else:
-        return Verdict("good", sentence(headline), points)
-    return Verdict("finding", sentence(f"{headline} on average over the load history, but {aside}"), points)
+        return f"{average} at peak load the {wave} is off by up to {worst:+.1f} %"
+    if stray[1] > share:
+        return f"{average} in single steps the {wave} is off by up to {stray[1]:.1f} % {largest} ({stray[0]})"
+    shape = max(profile_errors(record).items(), key=lambda item: item[1], default=("", 0.0))
+    if shape[1] > PROFILE_SHARES * share:
+        return f", but beside the axis the {wave}'s profile is off by up to {shape[1]:.1f} % of its peak ({shape[0]})"
+    off = None if conditions is None else furthest_off(conditions, 0.01 * share)
+    if off is None:
+        return ""
+    by = f"{100.0 * off[1]:+.1f} % off, {off[2]:.2g} times its uncertainty"
+    return f", but the trials speak against both: the peak force of {off[0]} is {by}"
 
 
 PROFILE_SHARES = 2.0
 """Margins by which a profile may be off, of its peak: twice a maximum's, as the wave's own bars are 1 and 2 %."""
-VALIDATION, REFINEMENT = "validation.csv", "refinement.csv"
+VALIDATION, CONDITIONS, REFINEMENT = "validation.csv", "validation_conditions.csv", "refinement.csv"
 NO_COLUMNS: Mapping[str, Columns] = MappingProxyType({})
 LARGEST_COPY = 600_000
 """Characters of a table that is still copied into the page."""
@@ -122,6 +136,7 @@ DESCRIPTIONS = {
     "fitted_parameters.csv": "fitted and fixed parameters with intervals",
     "measured.csv": "every trial beside both models",
     VALIDATION: "errors beside their uncertainties",
+    CONDITIONS: "the same of each condition's peak force",
     REFINEMENT: "coarser and finer runs, their values and their cost",
     "marker_fits.csv": "a parabola over time for each marker and axis",
     "circle.csv": "the circle around the tool in every frame",
@@ -167,7 +182,7 @@ def run_page(
     if record.scenario.wave.model == "published":
         sections.append(_published())
     if VALIDATION in columns:
-        sections.append(validation_section(columns[VALIDATION]))
+        sections.append(validation_section(columns[VALIDATION], columns.get(CONDITIONS)))
     sections.append(timing_section(record))
     if REFINEMENT in columns:
         sections.append(growth_section(columns[REFINEMENT], pair_names(record)))
@@ -175,7 +190,7 @@ def run_page(
     return Page(
         title=record.name,
         subtitle=_subtitle(record, trials),
-        verdict=run_verdict(record, None if trials is None else trials.headline),
+        verdict=run_verdict(record, None if trials is None else trials.headline, columns),
         facts=_facts(environment),
         notices=_notices(record, trials),
         key_figures=_key_figures(record),

@@ -83,7 +83,8 @@ def normal_fits(record: RunRecord) -> Figure | None:
 Columns = Mapping[str, Sequence[Any]]
 WORDS = (
     "E is simulation minus data (ASME V&V 20). u_num is the standard uncertainty from coarser and finer runs (grid "
-    "convergence index over 1.15), u_input that of the fitted stiffness, u_D the standard error over replicate trials, "
+    "convergence index over 1.15), u_input that of the fitted stiffness, u_D the standard error over replicate trials "
+    "(of several conditions within them: what these differ by is an error of the model, told by condition), "
     "u_val their root sum of squares. The model error lies within E plus or minus u_val; |E| below u_val means that "
     "the validation cannot see a model error, not that there is none. Code to code nothing is measured, and u_val "
     "holds numerical uncertainties alone. The area metric is the area between the distributions of simulated and "
@@ -92,7 +93,7 @@ WORDS = (
 GROWTH = "One timed execution a level, alone in a process with one thread; on a busy machine a single one scatters."
 
 
-def validation_section(columns: Columns) -> Section:
+def validation_section(columns: Columns, conditions: Columns | None = None) -> Section:
     """Return the section on errors and their uncertainties."""
     names = ("quantity", "protocol", "simulation", "measure", "value", "unit")
     heads = ("quantity", "protocol", "simulation", "measure", Column("value"), "unit")
@@ -104,7 +105,20 @@ def validation_section(columns: Columns) -> Section:
         download=Download("tables/validation.csv"),
         row_headings=False,
     )
-    return Section("Validation", (Paragraph(WORDS), table))
+    each = [] if conditions is None else [_by_condition(conditions)]
+    return Section("Validation", (Paragraph(WORDS), table, *each))
+
+
+def _by_condition(columns: Columns) -> Table:
+    parts = [Column(name.removesuffix("_N"), "N") for name in columns if name.endswith("_N")]
+    rows = zip(*columns.values(), strict=True)
+    return Table(
+        "Peak force, condition by condition",
+        ("condition", "protocol", "simulation", "trials", *parts),
+        [tuple(cell or None if isinstance(cell, str) else cell for cell in row) for row in rows],
+        download=Download("tables/validation_conditions.csv"),
+        row_headings=False,
+    )
 
 
 def growth_section(columns: Columns, pair: Pair) -> Section:

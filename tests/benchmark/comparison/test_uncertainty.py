@@ -69,6 +69,21 @@ def test_replicates_give_the_standard_error_of_their_mean() -> None:
         replicate_uncertainty([1.0, np.nan])
 
 
+def test_what_conditions_differ_by_is_no_scatter_of_replicates() -> None:
+    """Errors of -0.57 and 0.09 N in two conditions had made an u_D of 0.1 N beside replicates that repeat to 0.02."""
+    values, names = [-0.58, -0.56, -0.57, 0.08, 0.10, 0.09], ["deep"] * 3 + ["shallow"] * 3
+    assert replicate_uncertainty(values, names) == pytest.approx(0.01 / np.sqrt(6.0))
+    assert replicate_uncertainty(values) == pytest.approx(float(scipy.stats.sem(values)))
+    assert replicate_uncertainty([1.0, 2.0], ["a", "b"]) is None
+
+
+def test_of_few_trials_an_interval_is_student_s() -> None:
+    values = np.array([4.9, 5.1, 5.3])
+    half = float(scipy.stats.t.ppf(0.975, 2) * scipy.stats.sem(values))
+    found = input_uncertainty(1.0, (5.1 - half, 5.1 + half), 2)
+    assert found == pytest.approx(float(scipy.stats.sem(values)), rel=1e-12)
+
+
 def test_an_interval_becomes_a_standard_uncertainty() -> None:
     width = float(scipy.stats.norm.ppf(0.975))
     assert input_uncertainty(-2.0, (1.0 - width * 0.1, 1.0 + width * 0.1)) == pytest.approx(0.2, rel=1e-12)

@@ -49,7 +49,20 @@ peak force,"prediction, stiffness of the other trials",fem,not assessed,none,
 """
 
 
-def run_result(folder: Path, *, synthetic: bool = False) -> Path:
+CONDITIONS = """condition,protocol,simulation,trials,D_N,E_N,u_num_N,u_input_N,u_D_N,u_val_N
+shallow,fitted to these trials (circular),fem,3,2.0,0.01,,0.02,0.01,0.022
+deep,fitted to these trials (circular),fem,3,4.0,-0.6,,0.1,0.02,0.102
+"""
+
+
+def test_a_condition_that_is_missed_speaks_against_the_model_beside_a_mean_that_is_not(tmp_path) -> None:
+    folder = run_result(tmp_path / "r", conditions=CONDITIONS)
+    found = [(says, limits) for says, limits in answers(folder)["agreement"] if "deep" in says or "shallow" in says]
+    words = "fem, peak force of deep (fitted to these trials (circular)): -15 % off, |E| is 5.9 u_val."
+    assert found == [(words, (AGAINST,))]
+
+
+def run_result(folder: Path, *, synthetic: bool = False, conditions: str = "") -> Path:
     layer = {"percent_error_max": 0.2, "equivalent": True}
     document = {
         "schema": 1, "name": "skin", "complete": True, "equivalence_margin": 0.02,
@@ -57,7 +70,8 @@ def run_result(folder: Path, *, synthetic: bool = False) -> Path:
         "comparison": {"dermis": layer, "fat": {**layer, "percent_error_max": 0.7}},
         "trials": {"session": "day", "synthetic": synthetic, "count": 4},
     }  # fmt: skip
-    return result(folder, {"results.json": document, "tables/validation.csv": VALIDATION})
+    more = {"tables/validation_conditions.csv": conditions} if conditions else {}
+    return result(folder, {"results.json": document, "tables/validation.csv": VALIDATION, **more})
 
 
 def test_a_run_tells_its_own_error_and_that_of_its_prediction(tmp_path) -> None:

@@ -1,6 +1,7 @@
 """Agreement is claimed where the mean over the history and the peak both agree."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from benchmark.runs.report.run_page import run_page, run_verdict
 from benchmark.runs.report.values import peak_errors
 from benchmark.runs.scenario_run import run_scenario
 from benchmark.runs.tables import run_tables
+from benchmark.runs.validation import condition_columns
 
 QUICK = {"fem.mesh": "coarse", "load.observations": "20", "wave.large_press": "linear"}
 
@@ -54,6 +56,29 @@ def test_a_profile_that_is_off_beside_right_maxima_is_not_called_good(finished: 
     verdict = run_verdict(_with_wave(finished, np.full(20, 1.001), beside))
     assert verdict.status == status
     assert ("beside the axis the wave model's profile is off by up to" in verdict.headline) == (status != "good")
+
+
+def _measured(forces: dict[str, tuple[float, ...]], factor: float) -> SimpleNamespace:
+    """Trials with peak forces (N) by condition, beside models with `factor` times the mean of all."""
+    made = [(name, force) for name, each in forces.items() for force in each]
+    told = factor * float(np.mean([force for _, force in made]))
+    same = {"fem_force": np.array([0.0, told]), "wave_force": None, "held_out_force": None}
+    trials = tuple(SimpleNamespace(condition=name, force=np.array([0.0, force]), **same) for name, force in made)
+    stiffness = SimpleNamespace(value=1.0, ci95_low=0.99, ci95_high=1.01, log_std=0.01, trials=len(trials))
+    return SimpleNamespace(trials=trials, fit=SimpleNamespace(stiffness=stiffness))
+
+
+@pytest.mark.parametrize(
+    ("shallow", "deep", "status"),
+    [((1.0, 1.01, 0.99), (1.0, 1.0, 1.01), "good"), ((0.9, 0.91, 0.89), (1.1, 1.11, 1.09), "finding")],
+)
+def test_models_that_agree_beside_trials_that_do_not_are_not_called_good(finished, shallow, deep, status) -> None:
+    """One stiffness missed a condition by 15 %, six times its uncertainty, and the mean of all by none."""
+    agreeing = _with_wave(finished, np.full(20, 1.001))
+    record = replace(agreeing, measured=_measured({"shallow": shallow, "deep": deep}, 1.0))
+    verdict = run_verdict(record, None, {"validation_conditions.csv": condition_columns(record)})
+    assert verdict.status == status
+    assert ("the trials speak against both: the peak force of " in verdict.headline) == (status != "good")
 
 
 def test_maxima_of_models_that_came_to_unlike_loads_are_those_of_the_steps_that_both_reached(finished) -> None:
