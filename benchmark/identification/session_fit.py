@@ -208,8 +208,8 @@ def fit_warnings(trials: Sequence[TrialFit], pooled: PooledStiffness) -> list[st
 
 
 def elastic_only(trials: Sequence[TrialFit]) -> tuple[str, ...]:
-    """Those of the warnings that hold for a fit with an elastic law alone, not for one with relaxation."""
-    return tuple(text for text in (_time(trials), _misfit(trials)) if text)
+    """Those of the warnings that hold for the elastic law as told alone, not for one with relaxation or another law."""
+    return tuple(text for text in (_time(trials), _misfit(trials), _at_end(trials)) if text)
 
 
 def fit_notes(trials: Sequence[TrialFit], pooled: PooledStiffness, joint: JointFit | None) -> list[str]:

@@ -191,8 +191,8 @@ def carry_out_fit(request: FitRequest, listener: Listener) -> FitRecord:
     answer = answer_of((found, *others), request.wish, table, listener)
     exported, said = exports(answer.identified, request.export)
     theirs = (f"{one.session.name}: {text}" for one in others for text in one.warnings if text not in found.warnings)
-    relaxes = any(key.endswith(RELAXATION) for key in table.free)
-    idle = elastic_only(found.fit.trials) if relaxes else ()  # of an elastic law, which is not what was fitted
+    other = table.law is not None or any(key.endswith(RELAXATION) for key in table.free)
+    idle = elastic_only(found.fit.trials) if other else ()  # of the law as told, which is not what was fitted
     own = (text for text in found.warnings if text not in idle)
     found = replace(found, warnings=(*own, *theirs, *said))
     return FitRecord(found, repair, request.seed, answer, exported)

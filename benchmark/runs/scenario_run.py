@@ -192,13 +192,14 @@ def _side_by_side(scenario: Scenario, options: RunOptions, listener: Listener, o
 def beside_small_strain(scenario: Scenario, pair: SideBySide, drive: Drive) -> SideBySide:
     """Return the pair with a note on how far the wave of small strain is off at peak load, layer by layer.
 
-    Without one where small strain does not cover the tool, as under friction.
+    Without one where small strain does not cover the tool, as under friction, where the depth is told, which is then
+    the same, and under a pull, which the wave follows in small strain.
     """
     fem, wave = pair.fem.result, pair.wave.result
     if fem is None or wave is None or wave.model != "wave" or not took_finite_strain(scenario, wave):
         return pair
     peak = int(np.abs(drive.value).argmax())
-    if peak >= len(fem.top_deflection):
+    if peak >= len(fem.top_deflection) or scenario.load.control == "depth" or drive.value[peak] < 0.0:
         return pair
     try:
         linear = small_strain_deflection(scenario, drive)[peak]

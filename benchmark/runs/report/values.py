@@ -123,7 +123,7 @@ def fit_headline(fit: SessionFit) -> str:
     apart = "" if fold is None else f"; its conditions differ {fold:.3g}-fold, which one stiffness does not follow"
     return (
         f"fitted to {counted(count, 'trial')}: {what}; the elastic law leaves {rms:.2g} % of the "
-        f"peak force (median over trials of the root mean square){apart}"
+        f"peak force (median over trials, each by its own stiffness, of the root mean square){apart}"
     )
 
 

@@ -65,3 +65,11 @@ def test_a_wave_with_a_flat_end_is_said_under_a_round_tool() -> None:
     assert "flat end" in flat_wave(Tool(radius=5e-3, contact="rigid_frictionless", edge_radius=5e-3))[0]
     assert not flat_wave(Tool(radius=5e-3, contact="rigid_frictionless", edge_radius=0.5e-3))
     assert not flat_wave(Tool(radius=5e-3, contact="rigid_bonded"))
+
+
+@pytest.mark.parametrize("told", [{"load.control": "depth", "load.peak": "3 mm"}, {"load.peak": "-0.3 N"}])
+def test_where_depths_are_told_or_small_strain_is_followed_there_is_none(told):
+    """Depths that both waves were told were called 0 % off, and a pull in small strain off by itself."""
+    record = run_scenario(load_scenario("skin-5N", QUICK | told), OPTIONS, QUIET)
+    assert record.pair.wave.result is not None
+    assert SMALL_STRAIN not in record.pair.wave.result.notes
