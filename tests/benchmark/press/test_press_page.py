@@ -3,6 +3,7 @@
 import json
 import re
 from contextlib import nullcontext
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from benchmark.cli.app import main
 from benchmark.errors import InputError
 from benchmark.files import load_scenario
+from benchmark.press import pressed_specimen as pressed
 from benchmark.press.press_page import SIGN, PressRequest, render_press_page, specimens
 from benchmark.press.pressed_specimen import pressed_specimen
 from benchmark.runs.options import Listener
@@ -172,3 +174,22 @@ def test_nothing_in_the_page_ends_its_data_early(page_document):
 def test_what_can_be_chosen_is_refused_by_the_option_it_was_given_with(request_, says) -> None:
     with pytest.raises(InputError, match=f"^{says}"):
         specimens(request_, Silent())
+
+
+def test_the_finite_elements_end_where_their_press_is_not_stable(monkeypatch):
+    """Behind a fold their curve was a zig-zag of slopes from -1196 to 617 N/m, without a word."""
+
+    class Folding:
+        unknowns = 10
+
+        def run(self, load):
+            force = np.where(load.value < 1e-3, load.value, 0.9 * load.value)
+            profile = lambda step, radii: np.full((3, radii.size), load.value[step])  # noqa: E731
+            return SimpleNamespace(force=force, profile=profile, unstable_from=1e-3)
+
+    monkeypatch.setattr(pressed, "FemModel", lambda scenario, **_: SimpleNamespace(prepared=Folding()))
+    found = pressed_specimen(load_scenario("skin-5N", {**COARSE, "load.peak": "1 N"}))
+    assert found.fem is not None
+    assert found.fem.table.deepest < 1e-3
+    assert (np.diff(found.fem.table.force) > 0.0).all()
+    assert any(text.startswith("The finite elements end at 1 mm: from there on") for text in found.remarks)
