@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from benchmark.discovery import criteria
+from benchmark.discovery.base import calibration
 from benchmark.discovery.base.calibration import _gain_spread, _spreads, calibrate
 from benchmark.discovery.base.trials_problem import OWN
 from benchmark.discovery.trials.preparing import prepare
@@ -33,8 +34,10 @@ def test_the_depth_at_touch_is_each_trials_own(session_of, quick_session):
     assert noise == pytest.approx(still, rel=0.15)
 
 
-def test_trials_that_touch_alike_have_little_of_it(session_of):
+def test_trials_that_touch_alike_have_little_of_it(session_of, monkeypatch):
     found, _ = _noise(session_of(trials=6))
+    monkeypatch.setattr(calibration, "_gain_spread", lambda problem, gain: 0.123)
+    assert _spreads(found.base, found.problem.noise.scale).gain == 0.123
     assert found.problem.prior.height < 0.1 * TOUCH
     late, early = found.base.nuisance.copy(), found.base.nuisance.copy()
     late[:, OWN.index("height")] -= 2.0 * TOUCH  # a rig that finds the touch by a force finds all of them late
