@@ -135,9 +135,10 @@ def condition_columns(record: RunRecord) -> Columns | None:
 
 
 def furthest_off(columns: Mapping[str, Sequence[Any]], least: float) -> tuple[str, float, float] | None:
-    """The condition that speaks most against the finite elements fitted to it: name, E over D, and |E| over u_val.
+    """The condition that speaks most against the finite elements: its name, E over D, and |E| over u_val.
 
-    Of `condition_columns`: by more than two u_val, and a share `least` of D; None where none does.
+    Of `condition_columns`, by the stiffness fitted to all trials or to the others: off by more than two u_val, and by a
+    share `least` of D; None where none is.
     """
     rows = zip(*(columns[name] for name in ("condition", "simulation", "D_N", "E_N", "u_D_N", "u_val_N")), strict=True)
     found = [

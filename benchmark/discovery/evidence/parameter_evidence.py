@@ -25,13 +25,13 @@ def effect_estimates(fitted: Fit) -> tuple[tuple[str, Estimate], ...]:
     values = fitted.model.values(fitted.vector)
     out = []
     for k, (slug, p) in enumerate(fitted.model.parameters, start=first):
-        inner = (fitted.vector[k] - half[k], fitted.vector[k] + half[k]) if slopes(fitted, k) else walked(fitted, k)
+        inner = (fitted.vector[k] - half[k], fitted.vector[k] + half[k]) if has_slope(fitted, k) else walked(fitted, k)
         ends = _outer(p, inner[0]), _outer(p, inner[1])
         out.append((slug, Estimate(p.name, values[slug][p.name], p.unit, ends)))
     return tuple(out)
 
 
-def slopes(fitted: Fit, place: int) -> bool:
+def has_slope(fitted: Fit, place: int) -> bool:
     """Whether the data tell of a number of the vector by a slope: a pull that lets go between two samples has none."""
     return bool(1.0 - fitted.covariance[place, place] * fitted.precision[place] > criteria.TOLD)
 
@@ -159,7 +159,7 @@ def determined(fitted: Fit, effect: Effect, names: tuple[str, ...] = ()) -> bool
     free = [each for each in found if each.free]
     if not free:
         return bool(whole)
-    stepped = [each for each in free if not each.parameter.logarithmic and not slopes(fitted, each.place)]
+    stepped = [each for each in free if not each.parameter.logarithmic and not has_slope(fitted, each.place)]
     if any(walked(fitted, each.place)[0] > max(each.parameter.low, 0.0) for each in stepped):
         return True
     if not all(each.parameter.logarithmic for each in free):

@@ -162,6 +162,9 @@ def surrogate(
     ramp = differentiated_ramp(press.session, *setup, press.depth, keys, forward, STEPS, judge_mesh=judge_mesh)
     if ramp.failure is not None or ramp.depth[-1] < press.depth * (1.0 - 1e-9):
         raise StopsError(press.depth, float(ramp.depth[-1]))
+    locked = SolverError(f"the force of {press.setup[0].name!r} does not go smoothly with the depth at these values")
+    if not np.isfinite(ramp.force).all():
+        raise locked
     by = np.zeros((len(parameters), GRID))
     for k, chain in chains.items():
         by[k] = 1.0 if parameters[k].key == COMMON else _logarithmic(ramp, chain)
@@ -171,7 +174,7 @@ def surrogate(
     at_edge = 0.0 if ramp.at_edge is None else np.interp(grid, ramp.depth, ramp.at_edge)
     rings = _rings(press, ramp, chains, len(parameters))
     if not (np.isfinite(force).all() and np.isfinite(by).all() and force[1:].min() > 0.0):
-        raise SolverError(f"the force of {press.setup[0].name!r} does not go smoothly with the depth at these values")
+        raise locked
     return PressSurrogate(grid, force, by, layers, vector.copy(), ramp.mesh_error, at_edge, *rings)
 
 
