@@ -147,6 +147,11 @@ class DiscTool:
         return self.contact.startswith("rigid")
 
     @property
+    def sticks(self) -> bool:
+        """Whether tissue is glued to the face, and pulled by it."""
+        return self.contact == "rigid_bonded"
+
+    @property
     def slides(self) -> bool:
         """Whether the tissue slides under a flat face and over its rounded edge.
 

@@ -9,6 +9,7 @@ from scipy.linalg import expm
 
 from wavemodel.arrays import FloatArray
 from wavemodel.errors import require_not_negative
+from wavemodel.integrators.lags import free_motion, lag_end, relaxation
 from wavemodel.integrators.viscoelastic import Prony
 
 
@@ -33,7 +34,7 @@ class ContactRelaxation:
     def __init__(self, contacts: int, series: Prony, retardation: float) -> None:
         require_not_negative("retardation", retardation, "s")
         self._strength, self._rate = series.ordered
-        self._eta, count = retardation, self._strength.size
+        self._series, self._eta, count = series, retardation, self._strength.size
         # y_j, then e, as plain numbers: a series has a few terms, which arrays would only slow down.
         self._state = [[0.0] * (count + 1) for _ in range(contacts)]
         self._steps: list[tuple[float, float, float]] = []
@@ -55,12 +56,9 @@ class ContactRelaxation:
         """Elastic force after a frame at whose end the held contact answers with none: where the surface stands, N."""
         self._prepare(dt)
         state = self._state[contact]
-        before, share = state[-1], 1.0 + self._eta / dt
-        left = self._eta * before / dt
-        for j, (keep, first, last) in enumerate(self._steps):
-            left += keep * state[j] + first * before
-            share -= last
-        return left / share
+        before, jump = state[-1], self._eta / dt
+        offset, gain = lag_end(before, state[:-1], self._steps)
+        return (offset + jump * before) / (1.0 + jump - gain)
 
     def fade(self, contact: int, share: float) -> None:
         """Keep a share of what a contact remembers."""
@@ -90,13 +88,12 @@ class ContactRelaxation:
 
     def _released(self, dt: float) -> FloatArray:
         """(J + 1, J + 1) from the state (y, e) at the last instant to that after a frame."""
-        count = self._strength.size
-        fed = self._rate * self._strength
+        matrix, row = free_motion([(relaxation(self._series), self._rate)], self._eta)
+        count, moved = self._strength.size, expm(matrix * dt)
         whole = np.zeros((count + 1, count + 1))
         if self._eta:
-            whole[:count, :count], whole[:count, -1] = -np.diag(self._rate), fed
-            whole[-1, :count], whole[-1, -1] = 1.0 / self._eta, -1.0 / self._eta
-            return np.asarray(expm(whole * dt))
-        lags = expm((fed[:, None] - np.diag(self._rate)) * dt)
-        whole[:count, :count], whole[-1, :count] = lags, lags.sum(axis=0)
-        return whole
+            whole[:] = moved
+        else:
+            whole[:count, :count], whole[-1, :count] = moved, row @ moved
+        scale = np.append(self._strength, 1.0)
+        return np.asarray(scale[:, None] * whole / scale)

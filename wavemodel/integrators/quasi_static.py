@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from wavemodel.arrays import FloatArray, NumberArray
-from wavemodel.integrators.lags import LagSum, creep, relaxation
+from wavemodel.integrators.lags import LagSum, Standing, creep, relaxation, slopes
 from wavemodel.integrators.load_history import History, Load
 from wavemodel.integrators.viscoelastic import ELASTIC, Prony
 
@@ -49,6 +49,8 @@ class SharedBody:
         Relaxation.
     retardation
         Kelvin-Voigt time, s.
+    sticks
+        Whether the surface sticks to the tool; if not, one that creeps or is damped is not pulled by depth.
     """
 
     unit: FloatArray
@@ -56,6 +58,7 @@ class SharedBody:
     compliance: float
     series: Prony = ELASTIC
     retardation: float = 0.0
+    sticks: bool = True
 
     def follow(self, load: Load) -> tuple[FloatArray, FloatArray, FloatArray]:
         """(n, 1) force on the field, (n,) force, (n,) depth; exact for a force, or depth, linear in each step."""
@@ -64,13 +67,35 @@ class SharedBody:
         driven = load.value if by_force else load.value / self.compliance
         if not self.series.strength and self.retardation == 0.0:
             return driven[:, None], driven, driven * self.compliance
-        answer, _ = law.follow(load.durations, driven, law.rest(load.initial(driven)))
+        found, answer = answered(law, load, driven, by_force or self.sticks)
+        driven = found.value
         driven_by, force = (answer, driven) if by_force else (driven, answer)
         return driven_by[:, None], force, driven_by * self.compliance
 
 
+def answered(law: LagSum, load: Load, driven: FloatArray, sticks: bool) -> tuple[Standing, FloatArray]:
+    """How a surface stands under a tool, and the (n,) answer.
+
+    Parameters
+    ----------
+    law
+        What lets force relax.
+    load
+        The history.
+    driven
+        (n,) what comes in where the tool holds the surface.
+    sticks
+        Whether it holds it in any case; if not, it does not pull.
+    """
+    driven = driven if sticks else np.maximum(driven, 0.0)
+    start = load.initial(driven)
+    found = law.surface(load.durations, driven, start, hold=np.inf if sticks else 0.0)
+    answer = found.answer + law.rate * slopes(load.durations, found.value, start)
+    return found, np.where(found.free, 0.0, answer)
+
+
 def quasi_static(load: Load, body: StaticBody) -> History:
-    """Run a load history without inertia."""
+    """Run a load history without inertia; the depth is the surface's."""
     driven_by, force, depth = body.follow(load)
     unit = body.unit
 
@@ -94,12 +119,15 @@ class LayerwiseBody:
         (B,) depth per force, m/N; the first is zero under Kelvin-Voigt damping.
     rate
         (M,) of the lags, 1/s.
+    sticks
+        As of a `SharedBody`.
     """
 
     unit: FloatArray
     axis: FloatArray
     depth: FloatArray
     rate: FloatArray
+    sticks: bool = True
 
     def follow(self, load: Load) -> tuple[FloatArray, FloatArray, FloatArray]:
         """(n, B) force on each field, (n,) force, (n,) depth; exact for a force, or depth, linear in each step."""
@@ -108,13 +136,9 @@ class LayerwiseBody:
             driven_by = np.concatenate([load.value[:, None], lags.T], axis=1)
             return driven_by, load.value, driven_by @ self.depth
         inverse = self._inverse
-        lags = self._lags(load, load.value, inverse.time)
-        state = np.outer(load.value, inverse.direct) + np.real(lags.T @ inverse.states.T)
-        force = inverse.force_by_depth * load.value + state @ inverse.force_by_state
-        if inverse.force_by_rate:
-            rate = LagSum(0.0, np.empty(0), np.empty(0), inverse.force_by_rate)
-            force = force + rate.follow(load.durations, load.value, rate.rest(load.initial(load.value)))[0]
-        return np.concatenate([force[:, None], state], axis=1), force, load.value
+        found, force = answered(inverse.law, load, load.value, self.sticks)
+        state = np.outer(found.value, inverse.direct) + np.real(found.lags[0].T @ inverse.states.T)
+        return np.concatenate([force[:, None], state], axis=1), force, found.value
 
     @staticmethod
     def _lags(load: Load, driven: FloatArray, time: NumberArray) -> NumberArray:
@@ -162,3 +186,11 @@ class _DepthDriven:
     force_by_depth: float
     force_by_state: FloatArray
     force_by_rate: float
+
+    @property
+    def law(self) -> LagSum:
+        """Force over depth; its weights may be complex in pairs, which add up to what is real."""
+        weight = self.force_by_state @ self.states
+        return LagSum(
+            self.force_by_depth + float(self.force_by_state @ self.direct), weight, self.time, self.force_by_rate
+        )

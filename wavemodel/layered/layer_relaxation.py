@@ -23,7 +23,7 @@ from wavemodel.layered.remainder import Remainder, deflections, less_half_space,
 from wavemodel.layered.stack.compliance import exact_faces, layer_faces, quadratic_faces
 from wavemodel.layered.stack.creep import LagNodes, StackCreep, lag_nodes, stack_creep
 from wavemodel.layered.stack.laminate import Laminate, laminate
-from wavemodel.specimen import WaveLayer
+from wavemodel.specimen import DiscTool, WaveLayer
 
 LEAST_VOLUME = 5e-4
 """0.5 less Poisson's ratio, below which a layer does not change its volume, and shape is all that relaxes."""
@@ -159,16 +159,18 @@ def _softer_in_shape(layer: WaveLayer, lost: float) -> WaveLayer:
 
 
 def static_body(
-    press: Press, layers: Sequence[WaveLayer], rigid: bool, series: tuple[Prony, ...], damping: Damping
+    press: Press, layers: Sequence[WaveLayer], tool: DiscTool, series: tuple[Prony, ...], damping: Damping
 ) -> tuple[StaticBody, Press]:
     """The body without inertia, and the press with what its remainder needs."""
     common, retardation = shared(series), damping.stiffness_time
     if common is not None:
-        return SharedBody(press.unit[None], press.unit_axis[None], press.compliance, common, retardation), press
+        unit, axis = press.unit[None], press.unit_axis[None]
+        return SharedBody(unit, axis, press.compliance, common, retardation, tool.sticks), press
     stack = press.stack
     tension = None if stack.tension is None else stack.tension[stack.top_of_layer]
     whole = laminate(layers, subdivision.uniform([1] * len(layers)), stack.base, tension)
-    return layer_creep(press, whole, rigid, series, retardation)
+    body, press = layer_creep(press, whole, tool.rigid, series, retardation)
+    return replace(body, sticks=tool.sticks), press
 
 
 @dataclass(frozen=True)

@@ -140,7 +140,7 @@ class LayeredWave:
             )
         self.body: StaticBody
         self.press: Press
-        self.body, self.press = static_body(elastic, self.layers, tool.rigid, self.relaxation, self.damping)
+        self.body, self.press = static_body(elastic, self.layers, tool, self.relaxation, self.damping)
         self.first_frequency: float = first_frequency(self.press)
         self.options = options_of(with_slip(physics, slip, self.press), self.relaxation, self.damping, integrator)
         large = finite_strain_of(large_press, self.press, tool, integrator, reach)
@@ -194,7 +194,7 @@ class LayeredWave:
         return WaveSolution(
             time=load.time,
             force=history.force,
-            depth=history.depth,
+            depth=load.value if load.control == "depth" else history.depth,
             layer_names=tuple(layer.name for layer in self.layers),
             top_deflection=history.top_deflection,
             integrator=method,

@@ -49,7 +49,7 @@ class ElasticLaw:
 
 
 def finite_strain_run(load: Load, body: StaticBody, law: ElasticLaw) -> History:
-    """Run a history at finite strain; the elastic force is taken as linear in each step.
+    """Run a history at finite strain; the elastic force is taken as linear in each step, the depth is the surface's.
 
     Raises
     ------
@@ -66,7 +66,7 @@ def finite_strain_run(load: Load, body: StaticBody, law: ElasticLaw) -> History:
 
 
 def options_run(load: Load, press: Press, law: ElasticLaw, physics: Physics) -> History:
-    """Run a history on a body with options.
+    """Run a history on a body with options; the depth is the surface's.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def options_run(load: Load, press: Press, law: ElasticLaw, physics: Physics) -> 
 
     added, _ = _added(law, elastic)
     top = np.outer(elastic, press.unit_axis) + added
-    return History(trace.force, trace.depth, top, elastic[:, None], amplitude, elastic)
+    return History(trace.force, trace.surface, top, elastic[:, None], amplitude, elastic)
 
 
 def _added(law: ElasticLaw, elastic: FloatArray) -> tuple[FloatArray, FloatArray]:

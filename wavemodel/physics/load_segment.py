@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
 from wavemodel.arrays import BoolArray, FloatArray
+from wavemodel.integrators.lags import LagStage
 
 Memory: TypeAlias = tuple[float, ...]
 """What an option remembers between two pieces of a history; empty before the first."""
@@ -42,4 +43,12 @@ class BodyOption(Protocol):
 
     def act(self, segment: LoadSegment, memory: Memory) -> tuple[FloatArray, Memory]:
         """(n,) force with the effect, and the memory after the last sample."""
+        ...
+
+
+class RelaxingOption(BodyOption, Protocol):
+    """One that lets the force relax."""
+
+    def stage(self, segment: LoadSegment, memory: Memory) -> LagStage:
+        """Its lags over the steps of a segment, whose force may still be another, with their memory."""
         ...

@@ -15,11 +15,12 @@ from scipy.optimize import brentq
 
 from wavemodel.arrays import BoolArray, FloatArray
 from wavemodel.errors import WaveError
+from wavemodel.integrators.lags import LagStage, Standing, standing
 from wavemodel.integrators.load_history import Load, checked_load
 from wavemodel.integrators.viscoelastic import Prony
 from wavemodel.physics.contact import Adhesion, DryFriction, PermanentSet
 from wavemodel.physics.elastic import Floor, InterfaceSlip, Pretension, StrainStiffening, StressSoftening
-from wavemodel.physics.load_segment import BodyOption, LoadSegment, Memory
+from wavemodel.physics.load_segment import BodyOption, LoadSegment, Memory, RelaxingOption
 from wavemodel.physics.time_dependent import PoroelasticDrainage, RelaxingForce, ViscousDamping
 
 ForceLaw: TypeAlias = Callable[[FloatArray], FloatArray]
@@ -27,6 +28,10 @@ ForceLaw: TypeAlias = Callable[[FloatArray], FloatArray]
 WIDENINGS = 60
 EXACT = 1e-13
 """Of the force, and of the depth (relatively), to which a step is solved."""
+HALVINGS = 48
+"""Of the depth so far, for where a free surface stands."""
+PASSES = 12
+"""At most, where how fast fluid drains goes with where the tool touches."""
 NO_SET, NO_ADHESION = PermanentSet(0.0), Adhesion()
 
 
@@ -36,7 +41,8 @@ class Physics:
 
     The tool meets the surface where `permanent_set` left it; `adhesion` says whether they touch. The elastic force is
     f, changed by `stiffening`, `pretension`, `floor`, `slip` and `softening`. It relaxes by `relaxation` and
-    `drainage`, and `damping` and `friction` act beside it. A tool that is not held cannot be pulled.
+    `drainage`, and `damping` and `friction` act beside it. A tool that is not held cannot be pulled: one that goes up
+    faster than the tissue creeps loses it, and meets it again where it then stands.
 
     Attributes
     ----------
@@ -63,10 +69,20 @@ class Physics:
         return tuple(option for option in chosen if option is not None)
 
     @cached_property
-    def relaxing(self) -> tuple[BodyOption, ...]:
+    def relaxing(self) -> tuple[RelaxingOption, ...]:
         """What lets the force relax, in order."""
         relaxation = None if self.relaxation is None else RelaxingForce(self.relaxation)
         return tuple(option for option in (relaxation, self.drainage) if option is not None)
+
+    @property
+    def retardation(self) -> float:
+        """Kelvin-Voigt time, s."""
+        return 0.0 if self.damping is None else self.damping.retardation
+
+    @property
+    def drains_alike(self) -> bool:
+        """Whether fluid drains alike however deep the tool is."""
+        return self.drainage is None or self.drainage.edge == 0.0
 
     @cached_property
     def beside(self) -> tuple[BodyOption, ...]:
@@ -76,11 +92,15 @@ class Physics:
 
 @dataclass(frozen=True)
 class PressState:
-    """What a body remembers of a press: whether it is touched, and the memories of its options in their order."""
+    """What a body remembers of a press: whether it is touched, and the memories of its options in their order.
+
+    `depth` is that of the last touch below where permanent set left the surface, m: a free one stands no deeper.
+    """
 
     touching: bool
     surface: Memory
     options: tuple[Memory, ...]
+    depth: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -92,7 +112,8 @@ class PressTrace:
     depth
         (n,) of the tool, m.
     surface
-        (n,) where the tissue under the tool stands, m: at the tool where they touch, else where permanent set left it.
+        (n,) where the tissue under the tool stands, m: at the tool where they touch, else where it has crept back to,
+        in the end where permanent set left it.
     force
         (n,) on the tool, N.
     elastic
@@ -173,20 +194,25 @@ class QuasiStaticPress:
             Whether tool and tissue are one: no lift-off, and any pull.
         """
         met, surface, set_memory = (self.physics.permanent_set or NO_SET).meet(duration, depth, state.surface)
-        start = self._touched(duration, met, state.touching, held)
-        memories = iter(state.options)
-        elastic, first = _chain(self.physics.elastic, start, memories)
-        relaxed, second = _chain(self.physics.relaxing, elastic, memories)
+        elastic, first = self._elastic(self._touched(duration, met, state.touching, held), state)
+        if not held and (self.physics.relaxing or self.physics.retardation):
+            elastic, relaxed, second = self._unheld(elastic, state)
+        else:
+            relaxed, second = _chain(self.physics.relaxing, elastic, iter(state.options[len(first) :]))
+        memories = iter(state.options[len(first) + len(second) :])
         force, third = relaxed.force, []
         for option in self.physics.beside:
             part, memory = option.act(elastic, next(memories))
             force = force + part
             third.append(memory)
         if not held:
-            force = np.where(start.touching, np.maximum(force, -self._adhesion.force), 0.0)
-        stands = np.where(start.touching, depth, surface)
-        after = PressState(bool(start.touching[-1]), set_memory, (*first, *second, *third))
-        return PressTrace(depth, stands, force, elastic.force, start.touching), after
+            force = np.where(elastic.touching, np.maximum(force, -self._adhesion.force), 0.0)
+        scale = np.divide(depth - surface, met, out=np.ones_like(depth), where=met != 0.0)
+        below = np.maximum(elastic.depth, 0.0)
+        stands = np.where(elastic.touching, depth, surface + scale * below)
+        options = (*first, *second, *third)
+        after = PressState(bool(elastic.touching[-1]), set_memory, options, float(_last_touched(elastic, state)[-1]))
+        return PressTrace(depth, stands, force, elastic.force, elastic.touching), after
 
     @cached_property
     def _adhesion(self) -> Adhesion:
@@ -204,9 +230,72 @@ class QuasiStaticPress:
             return np.asarray(met >= 0.0)
         return self._adhesion.touching(met, pull, before)
 
+    def _elastic(self, bare: LoadSegment, state: PressState) -> tuple[LoadSegment, list[Memory]]:
+        return _chain(self.physics.elastic, bare, iter(state.options))
+
+    def _unheld(self, tool: LoadSegment, state: PressState) -> tuple[LoadSegment, LoadSegment, list[Memory]]:
+        """Elastic and relaxed force of a surface that a tool may lose, and what relaxes remembers."""
+        segment, touching = tool, tool.touching
+        for _ in range(PASSES):
+            found = self._standing(segment, tool, state)
+            segment = replace(tool, force=found.value, touching=~found.free)
+            if self.physics.drains_alike or np.array_equal(segment.touching, touching):
+                break
+            touching = segment.touching
+        away = found.free & (found.value > 0.0)
+        if away.any():
+            stood = self._depth_at(tool, found.value, away, state)
+            segment = replace(segment, depth=np.where(found.free & ~away, 0.0, stood))
+        second = [(one.last, *np.real(one.state).tolist()) for one in found.memories]
+        return segment, replace(segment, force=found.answer), second
+
+    def _standing(self, before: LoadSegment, tool: LoadSegment, state: PressState) -> Standing:
+        """How the surface stands under a tool, drained as far as it was touched before."""
+        memories = state.options[len(self.physics.elastic) :]
+        last = next((memory[0] for memory in memories if memory), float(tool.force[0]) if tool.endless else 0.0)
+        return standing(
+            self._stages(replace(before, depth=_last_touched(before, state)), state),
+            tool.duration,
+            tool.force,
+            tool.touching,
+            rate=self.physics.retardation,
+            last=last,
+            hold=self._adhesion.force,
+            held=state.touching,
+        )
+
+    def _stages(self, segment: LoadSegment, state: PressState) -> list[LagStage]:
+        stages, memories = [], state.options[len(self.physics.elastic) :]
+        for option, memory in zip(self.physics.relaxing, memories, strict=False):
+            stages.append(option.stage(segment, memory))
+            segment = replace(segment, force=stages[-1].follow(segment.force)[0])
+        return stages
+
+    def _depth_at(self, tool: LoadSegment, force: FloatArray, away: BoolArray, state: PressState) -> FloatArray:
+        """(n,) depth below the surface at which it stands, m: the tool's, or where it is away that of its force."""
+        high = np.maximum(np.maximum.accumulate(tool.depth), state.depth)
+        low = np.zeros_like(high)
+        for _ in range(HALVINGS):
+            middle = np.where(away, 0.5 * (low + high), tool.depth)
+            tried, _ = self._elastic(self._bare(tool, middle, tool.touching | away), state)
+            below = tried.force < force
+            low, high = np.where(below, middle, low), np.where(below, high, middle)
+        return np.where(away, 0.5 * (low + high), tool.depth)
+
+    def _bare(self, tool: LoadSegment, depth: FloatArray, touching: BoolArray) -> LoadSegment:
+        """The bare law at other depths."""
+        size = self.law(np.where(touching, np.abs(depth), 0.0))
+        return LoadSegment(tool.duration, depth, np.where(touching, np.copysign(size, depth), 0.0), touching)
+
+
+def _last_touched(segment: LoadSegment, state: PressState) -> FloatArray:
+    """(n,) depth below the surface, m: the tool's, or where it is away that at which it last touched."""
+    at = np.maximum.accumulate(np.where(segment.touching, np.arange(segment.depth.size), -1))
+    return np.where(at >= 0, segment.depth[at], state.depth)
+
 
 def _chain(
-    options: tuple[BodyOption, ...], segment: LoadSegment, memories: Iterator[Memory]
+    options: Sequence[BodyOption], segment: LoadSegment, memories: Iterator[Memory]
 ) -> tuple[LoadSegment, list[Memory]]:
     """Options one after the other."""
     after = []

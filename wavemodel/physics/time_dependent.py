@@ -6,7 +6,7 @@ import numpy as np
 
 from wavemodel.arrays import FloatArray
 from wavemodel.errors import require_between
-from wavemodel.integrators.lags import LagMemory, lagged, relaxation, slopes
+from wavemodel.integrators.lags import LagMemory, LagStage, LagSum, relaxation, slopes
 from wavemodel.integrators.viscoelastic import Prony
 from wavemodel.physics.load_segment import LoadSegment, Memory
 
@@ -32,12 +32,12 @@ class RelaxingForce:
 
     def act(self, segment: LoadSegment, memory: Memory) -> tuple[FloatArray, Memory]:
         """(n,) force."""
+        return _followed(self.stage(segment, memory), segment)
+
+    def stage(self, segment: LoadSegment, memory: Memory) -> LagStage:
+        """Its lags over the steps of a segment, with their memory."""
         law = relaxation(self.series)
-        start = law.rest(float(segment.force[0]) if segment.endless else 0.0)
-        if memory:
-            start = LagMemory(memory[0], np.array(memory[1:]))
-        force, end = law.follow(segment.duration, segment.force, start)
-        return force, (end.last, *end.state.tolist())
+        return LagStage(law, segment.duration / law.time[:, None], _remembered(memory, segment, law.time.size))
 
 
 @dataclass(frozen=True)
@@ -88,13 +88,26 @@ class PoroelasticDrainage:
 
     def act(self, segment: LoadSegment, memory: Memory) -> tuple[FloatArray, Memory]:
         """(n,) force; exact for f linear in xi within each step."""
+        return _followed(self.stage(segment, memory), segment)
+
+    def stage(self, segment: LoadSegment, memory: Memory) -> LagStage:
+        """Its lags over the steps of a segment, with their memory."""
         rate, weight = _spectrum()
-        first = float(segment.force[0]) if segment.endless else 0.0
-        last, *state = memory or (first,) * (TERMS + 1)
         step = segment.duration * self.diffusivity / self.contact_radius(segment.depth) ** 2
-        lags = lagged(step * rate[:, None], segment.force, last, np.array(state))
-        drained = self.strength * (weight @ lags)
-        return segment.force - drained, (float(segment.force[-1]), *lags[:, -1].tolist())
+        law = LagSum(1.0, -self.strength * weight, 1.0 / rate)
+        return LagStage(law, step * rate[:, None], _remembered(memory, segment, TERMS))
+
+
+def _remembered(memory: Memory, segment: LoadSegment, count: int) -> LagMemory:
+    """Where so many lags stand before a segment."""
+    first = float(segment.force[0]) if segment.endless else 0.0
+    last, *state = memory or (first,) * (count + 1)
+    return LagMemory(last, np.array(state))
+
+
+def _followed(stage: LagStage, segment: LoadSegment) -> tuple[FloatArray, Memory]:
+    force, lags = stage.follow(segment.force)
+    return force, (float(segment.force[-1]), *np.real(lags[:, -1]).tolist())
 
 
 def _spectrum() -> tuple[FloatArray, FloatArray]:

@@ -279,7 +279,7 @@ class PlateWave:
         if self._options is not None:
             return options_run(load, self._statics, self._options, 0.1 * self.hole_radius)
         if self._series is not None:
-            return relaxing_run(load, self._statics, self._series)
+            return relaxing_run(load, self._statics, self._series, self.tool.sticks)
         return self._statics.run(load)
 
     def _warnings(self, history: SheetHistory) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ from wavemodel.arrays import FloatArray
 from wavemodel.errors import NotCoveredError, WaveError
 from wavemodel.integrators.lags import creep, relaxation
 from wavemodel.integrators.load_history import Load
+from wavemodel.integrators.quasi_static import answered
 from wavemodel.integrators.viscoelastic import Prony
 from wavemodel.physics.quasi_static_press import Physics, driven
 from wavemodel.solution import checked_radii, radially
@@ -116,10 +117,11 @@ def with_relaxation(physics: Physics | None, series: Prony | None, integrator: s
     return replace(physics, relaxation=series)
 
 
-def relaxing_run(load: Load, statics: Statics, series: Prony) -> SheetHistory:
+def relaxing_run(load: Load, statics: Statics, series: Prony, sticks: bool) -> SheetHistory:
     """Run a history of a sheet that relaxes; exact for an elastic force that is linear in each step.
 
-    Under force control the depth is that of the force crept by the inverse of the series.
+    Under force control the depth is that of the force crept by the inverse of the series. By depth, a sheet that does
+    not stick to the tool is not pulled.
 
     Raises
     ------
@@ -131,9 +133,11 @@ def relaxing_run(load: Load, statics: Statics, series: Prony) -> SheetHistory:
         elastic, _ = law.follow(load.durations, load.value, law.rest(load.initial(load.value)))
         return _standing(statics, load, load.value, statics.rest("force", elastic)[1])
     elastic, _ = statics.rest("depth", load.value)
-    law = relaxation(series)
-    force, _ = law.follow(load.durations, elastic, law.rest(load.initial(elastic)))
-    return _standing(statics, load, force, load.value)
+    found, force = answered(relaxation(series), load, elastic, sticks)
+    stands = load.value
+    if found.free.any():
+        stands = np.where(found.free, statics.rest("force", found.value)[1], stands)
+    return replace(_standing(statics, load, force, stands), depth=load.value)
 
 
 def options_run(load: Load, statics: Statics, physics: Physics, scale: float) -> SheetHistory:

@@ -51,7 +51,10 @@ def test_layers_that_relax_each_in_its_own_way_keep_the_depth(skin):
     wave = LayeredWave(skin(), DiscTool(5e-3), large_press="corrected", relaxation=series)
     held = wave.run("depth", TIME, CYCLE)
     np.testing.assert_allclose(held.depth, CYCLE, rtol=1e-9, atol=1e-15)
-    np.testing.assert_allclose(held.top_deflection[:, 0], CYCLE, rtol=1e-9, atol=1e-15)
+    pressed = held.force > 0.0
+    assert pressed.sum() > 20
+    np.testing.assert_allclose(held.top_deflection[pressed, 0], CYCLE[pressed], rtol=1e-9, atol=1e-15)
+    assert (held.top_deflection[~pressed, 0] > CYCLE[~pressed]).all()
 
 
 def test_options_have_the_force_of_the_quasi_static_press(skin):

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from wavemodel import Prony, WaveError
+from wavemodel.physics.contact import Adhesion
 from wavemodel.physics.quasi_static_press import Physics, QuasiStaticPress
 from wavemodel.physics.time_dependent import PoroelasticDrainage, ViscousDamping
 
@@ -36,6 +37,84 @@ def test_a_tool_lifted_faster_than_the_tissue_follows_is_not_pulled():
     force = press.force(np.array([1.0, 60.0, 60.1, 60.2]), np.array([3e-3, 3e-3, 0.1e-3, 0.1e-3]))
     assert force[1] == pytest.approx(0.75, rel=1e-3)
     np.testing.assert_array_equal(force[2:], 0.0)
+
+
+def unilateral(time, depth, fine=400):
+    """Force and depth (n,) of a surface that creeps back by itself, by small steps: y_j' = (g_j e - y_j) / tau_j."""
+    g, tau = np.array(SERIES.strength), np.array(SERIES.time)
+    lags, before, deep, force, stands = np.zeros(2), 0.0, 0.0, [], []
+    for now, goal in zip(time, depth, strict=True):
+        step = (now - before) / fine
+        for k in range(fine):
+            tool = 500.0 * max(deep + (k + 1) / fine * (goal - deep), 0.0)
+            elastic = max(tool, lags.sum())
+            lags += step * (g * elastic - lags) / tau
+        before, deep = now, goal
+        force.append(max(tool - lags.sum(), 0.0))
+        stands.append(max(tool, lags.sum()) / 500.0)
+    return np.array(force), np.array(stands)
+
+
+TURNS = [0.0, 0.5, 3.0, 3.05, 3.4, 3.6, 5.0]
+
+
+@pytest.mark.parametrize("up", [0.1e-3, -1e-3])
+@pytest.mark.parametrize(("rows", "close"), [(50, 8e-3), (400, 1e-3)])
+def test_a_tool_that_comes_back_meets_the_surface_where_it_has_crept_to(up, rows, close):
+    """With the memory of a tool that sticks the second press was up to 7 and 12 % stronger."""
+    time = np.union1d(np.linspace(5.0 / rows, 5.0, rows), TURNS[1:])
+    depth = np.interp(time, TURNS, [0.0, 2e-3, 2e-3, up, up, 2e-3, 2e-3])
+    found = QuasiStaticPress(lambda d: 500.0 * d, Physics(relaxation=SERIES)).trace(time, depth)
+    force, stands = unilateral(time, depth)
+    np.testing.assert_allclose(found.force, force, atol=close)
+    np.testing.assert_allclose(found.surface, stands, atol=2e-3 * close)
+    assert found.surface[~found.touching].min() > 0.4e-3
+
+
+def test_a_tool_that_is_withdrawn_slowly_loses_nothing():
+    """Boltzmann's integral of a ramp down, as if it stuck, as long as that is a push."""
+    time = np.linspace(0.1, 12.0, 120)
+    depth = np.interp(time, [0.0, 1.0, 12.0], [0.0, 2e-3, 1e-3])
+    found = QuasiStaticPress(lambda d: 500.0 * d, Physics(relaxation=SERIES)).force(time, depth)
+    g, tau = np.array([0.3, 0.2]), np.array([0.4, 6.0])
+
+    def ramped(t):
+        return 0.5 * t + (g * tau * -np.expm1(-t[:, None] / tau)).sum(axis=1)  # K v = 1 N/s
+
+    expected = ramped(time) - (1.0 + 0.5 / 11.0) * ramped(np.maximum(time - 1.0, 0.0))
+    np.testing.assert_allclose(found, expected, rtol=1e-12)
+
+
+def test_a_damped_surface_comes_back_in_its_time():
+    press = QuasiStaticPress(lambda d: 500.0 * d, Physics(damping=ViscousDamping(0.2)))
+    found = press.trace(np.array([1.0, 1.001, 1.1, 1.2, 1.3]), np.array([1e-3, 0.0, 0.0, 0.0, 0.9e-3]))
+    np.testing.assert_allclose(found.surface[1:4], 1e-3 * np.exp(-np.array([0.001, 0.1, 0.2]) / 0.2), rtol=6e-3)
+    assert found.force[-1] == pytest.approx(500.0 * (0.9e-3 + 0.2 * (0.9e-3 - found.surface[3]) / 0.1))
+
+
+def test_drained_tissue_fills_again_before_it_is_met_where_it_was():
+    """F = 0 with one lag after the other: sample by sample, the depth at which a held body answers with nothing."""
+    option = PoroelasticDrainage(0.5, 1e-6, 2e-3)
+    press = QuasiStaticPress(lambda d: 200.0 * d + 4e4 * d**2, Physics(relaxation=SERIES, drainage=option))
+    time = np.linspace(0.01, 5.0, 500)
+    found = press.trace(time, np.interp(time, TURNS, [0.0, 1e-3, 1e-3, 0.0, 0.0, 1e-3, 1e-3]))
+    free = np.flatnonzero(~found.touching)
+    assert free.size > 30
+    state = press.rest()
+    for duration, depth, touching in zip(np.diff(time, prepend=0.0), found.surface, found.touching, strict=True):
+        trace, state = press.follow(np.array([duration]), np.array([depth]), state, held=True)
+        if not touching:
+            assert abs(trace.force[0]) < 2e-5
+
+
+def test_what_adhesion_holds_is_lost_like_nothing_where_it_is_little():
+    time = np.linspace(0.01, 5.0, 500)
+    depth = np.interp(time, TURNS, [0.0, 1e-3, 1e-3, 0.0, 0.0, 1e-3, 1e-3])
+    loose, sticky = (
+        QuasiStaticPress(lambda d: 500.0 * d, Physics(relaxation=SERIES, adhesion=adhesion)).force(time, depth)
+        for adhesion in (None, Adhesion(1e-9))
+    )
+    np.testing.assert_allclose(sticky, loose, atol=1e-8)
 
 
 def hold(time, radius, strength=0.4, depth=1e-3):
