@@ -6,7 +6,13 @@ measure first needs them.
 
 from benchmark.comparison.agreement import BlandAltman, Concordance, bland_altman, concordance
 from benchmark.comparison.distributions import AreaMetric, NormalFit, area_metric, normal_fit, overlap
-from benchmark.comparison.equivalence import Equivalence, paired_equivalence, two_sample_equivalence
+from benchmark.comparison.equivalence import (
+    Equivalence,
+    HistoryEquivalence,
+    history_equivalence,
+    paired_equivalence,
+    two_sample_equivalence,
+)
 from benchmark.comparison.layer_comparison import (
     LayerComparison,
     PairStatistics,
@@ -45,6 +51,7 @@ __all__ = [
     "Concordance",
     "Equivalence",
     "GridConvergence",
+    "HistoryEquivalence",
     "LayerComparison",
     "Moments",
     "NormalFit",
@@ -64,6 +71,7 @@ __all__ = [
     "describe_equivalence",
     "describe_t_test",
     "grid_convergence",
+    "history_equivalence",
     "input_uncertainty",
     "normal_fit",
     "normal_fit_columns",

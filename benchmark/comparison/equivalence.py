@@ -1,7 +1,10 @@
 """Equivalence of two models by two one-sided t-tests (TOST) with a stated margin.
 
-This is the test of agreement: equivalence within the margin is claimed only where both one-sided tests
-reject, which is where the 90 % interval of the difference lies inside the margin (Schuirmann 1987).
+This is the test of agreement of independent samples: equivalence within the margin is claimed only where both one-sided
+tests reject, which is where the 90 % interval of the difference lies inside the margin (Schuirmann 1987).
+
+The steps of a load history are no samples: written with more rows, the same two curves have a smaller p. Two models
+driven through one history are equivalent where their difference, which has no scatter, is inside the margin.
 """
 
 from dataclasses import dataclass
@@ -74,6 +77,50 @@ class Equivalence(Result):
                 "equivalent": float(self.equivalent),
             }
         )
+
+
+@dataclass(frozen=True, kw_only=True)
+class HistoryEquivalence(Equivalence):
+    """The paired test over the steps of one load history, and the verdict, which it does not decide.
+
+    Attributes
+    ----------
+    over_load : float
+        Mean difference over that of the FEM's size, each over what the FEM goes through, straight from step to step and
+        from nought to the first: rows on a line, or in a hold, change nothing.
+    worst : float
+        Largest difference of any step over the FEM's largest value.
+    """
+
+    over_load: float
+    worst: float
+
+    @property
+    def on_average(self) -> bool:
+        """Whether the mean difference is inside the margin."""
+        return abs(self.over_load) < self.margin_fraction
+
+    @property
+    def equivalent(self) -> bool:
+        """Whether it is, and the difference of every step is, of the largest value."""
+        return self.on_average and abs(self.worst) < self.margin_fraction
+
+    def rows(self) -> list[Row]:
+        """Lines for the statistics table; `p` takes the steps for independent samples."""
+        shares = {"difference over the load %": 100.0 * self.over_load, "largest difference %": 100.0 * self.worst}
+        *tests, verdict = super().rows()
+        return [*tests, *shared_rows(shares), verdict]
+
+
+def history_equivalence(fem: ArrayLike, wave: ArrayLike, margin_fraction: float = 0.02) -> HistoryEquivalence:
+    """Equivalence of two models over the steps (n,) of one load history; parameters and errors as the paired form."""
+    test = paired_equivalence(fem, wave, margin_fraction)
+    first, second = paired_samples(fem, wave)
+    delta, size = np.append(0.0, second - first), np.append(0.0, np.abs(first))
+    way = np.append(0.0, np.cumsum(np.abs(np.diff(first, prepend=0.0))))
+    over_load = float(np.trapezoid(delta, way) / np.trapezoid(size, way))
+    worst = float(delta[np.abs(delta).argmax()] / size.max())
+    return HistoryEquivalence(**vars(test), over_load=over_load, worst=worst)
 
 
 def paired_equivalence(fem: ArrayLike, wave: ArrayLike, margin_fraction: float = 0.02) -> Equivalence:

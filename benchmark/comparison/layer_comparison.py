@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from benchmark.comparison.agreement import BlandAltman, Concordance, bland_altman, concordance
 from benchmark.comparison.distributions import AreaMetric, NormalFit, area_metric, normal_fit, overlap
-from benchmark.comparison.equivalence import Equivalence, paired_equivalence
+from benchmark.comparison.equivalence import Equivalence, HistoryEquivalence, history_equivalence
 from benchmark.comparison.percent_error import PercentError, percent_error
 from benchmark.comparison.samples import Result, Row, aligned, plain
 from benchmark.comparison.t_tests import (
@@ -43,7 +43,7 @@ class PairStatistics(Result):
     pooled: TwoSampleT
     welch: TwoSampleT
     paired: PairedT
-    equivalence: Equivalence
+    equivalence: HistoryEquivalence
     bland_altman: BlandAltman
     concordance: Concordance
     passing: PassingRange
@@ -120,7 +120,7 @@ def compare_layer(
     load : (n,), optional
         Load of each step; no percentage where it is zero.
     margin_fraction : float
-        Equivalence margin as a fraction of the FEM's mean.
+        Equivalence margin as a fraction of the FEM's mean, and in each step of its largest value.
 
     Raises
     ------
@@ -148,7 +148,7 @@ def compare_samples(
         pooled_t_test(first, second),
         welch_t_test(first, second),
         paired_t_test(first, second),
-        paired_equivalence(first, second, margin_fraction),
+        history_equivalence(first, second, margin_fraction),
         bland_altman(first, second),
         concordance(first, second),
         passing_scale_errors(first[both]),
@@ -204,12 +204,18 @@ def describe_t_test(test: TwoSampleT, passing: PassingRange, power: float | None
 
 
 def describe_equivalence(test: Equivalence) -> str:
-    """One paragraph on the equivalence test, with its margin."""
+    """One paragraph on the equivalence test, with its margin and, over a load history, what decides instead."""
     margin = f"{100.0 * test.margin_fraction:.3g} % of the FEM's mean"
     found = f"p = {test.p_value:.3g}, 90 % interval of the difference {_share(test)}"
-    if test.equivalent:
-        return f"Equivalent within {margin} (TOST, {test.form.replace('_', '-')}: {found})."
-    return f"Equivalence within {margin} is not shown (TOST, {test.form.replace('_', '-')}: {found})."
+    verdict = f"Equivalent within {margin}" if test.equivalent else f"Equivalence within {margin} is not shown"
+    form = test.form.replace("_", "-")
+    if not isinstance(test, HistoryEquivalence):
+        return f"{verdict} (TOST, {form}: {found})."
+    return (
+        f"{verdict}: over the load the difference is {100.0 * test.over_load:+.3g} % of it, and at most "
+        f"{100.0 * test.worst:+.3g} % of the largest value. The two one-sided tests (TOST, {form}) take the steps for "
+        f"independent samples, so that their outcome depends on the number of rows ({found})."
+    )
 
 
 def _share(test: Equivalence) -> str:

@@ -81,7 +81,7 @@ def _equivalence(
     margin, wave = f"{share:g} % of the FEM's mean", record.pair.wave.name
     worst = max(errors.values(), key=abs, default=float("nan"))
     stray = max(largest_errors(record).items(), key=lambda item: item[1], default=("", 0.0))
-    failed = [c.layer for c in record.judged if c.statistics is None or not c.statistics.equivalence.equivalent]
+    failed = [c.layer for c in record.judged if c.statistics is None or not c.statistics.equivalence.on_average]
     if all(c.statistics is None for c in record.judged):
         why = record.judged[0].note if record.judged else "the layers are not compared, as the warnings say"
         return Verdict("finding", f"Equivalence is not tested: {why}.", points)
