@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
 
-from bench_hw.capture.progress import CaptureState, ProgressDisplay
+from bench_hw.capture.progress import CaptureState, ProgressDisplay, stopped_by
 from bench_hw.clock import Clock
 from bench_hw.devices.protocols import CameraFrame, ForceBlock
 from bench_hw.errors import BenchError, DeviceError
@@ -196,7 +196,7 @@ class Loop:
 
     def _turn(self) -> None:
         if self._context.stop.is_set():
-            raise SafetyError("interrupted", "stopped by Ctrl-C", self._clock.now())
+            raise SafetyError("interrupted", f"stopped by {stopped_by(self._context.stop)}", self._clock.now())
         self._force()
         self._confirmed(lambda: self._monitor.check_fresh(self._clock.now()), self._force)
         self._monitor.check_position(self._record_position(), self._clock.now())

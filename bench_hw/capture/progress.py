@@ -166,17 +166,29 @@ def choose_progress(quiet: bool) -> ProgressDisplay:
     return TerminalLine() if sys.stderr.isatty() else PlainLines()
 
 
+class StopEvent(threading.Event):
+    """Set to stop the capture; `by` says what asked for it."""
+
+    by = "Ctrl-C"
+
+
+def stopped_by(stop: threading.Event) -> str:
+    """What set an event: a signal by its name, or Ctrl-C."""
+    return stop.by if isinstance(stop, StopEvent) else StopEvent.by
+
+
 @contextmanager
 def stop_on_signals() -> Iterator[threading.Event]:
     """Give an event that SIGINT (Ctrl-C) and SIGTERM set; outside the main thread it is never set.
 
     A second signal raises `KeyboardInterrupt` wherever the program is, in case it hangs.
     """
-    stop = threading.Event()
+    stop = StopEvent()
 
-    def note(*_: object) -> None:
+    def note(number: int, _: object) -> None:
         if stop.is_set():
             raise KeyboardInterrupt
+        stop.by = "Ctrl-C" if number == signal.SIGINT else signal.Signals(number).name
         stop.set()
 
     if threading.current_thread() is not threading.main_thread():

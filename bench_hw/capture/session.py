@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from bench_hw.capture.loop import LoopContext
 from bench_hw.capture.order import CaptureOrder, check_order, check_replay
-from bench_hw.capture.progress import CaptureState, ProgressDisplay, stop_on_signals
+from bench_hw.capture.progress import CaptureState, ProgressDisplay, stop_on_signals, stopped_by
 from bench_hw.capture.session_folder import (
     CAMERA_FILE,
     LOG_FILE,
@@ -128,7 +128,8 @@ class _Session:
         self._health()
         for number in range(1, self._order.trials + 1):
             if number > 1 and not self._rest():
-                return Fault("interrupted", "stopped by Ctrl-C between two trials; the tool was sent back", True)
+                by = stopped_by(self._context.stop)
+                return Fault("interrupted", f"stopped by {by} between two trials; the tool was sent back", True)
             outcome = self._record(number, zero)
             if outcome.fault is not None:
                 return outcome.fault

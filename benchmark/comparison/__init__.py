@@ -24,7 +24,7 @@ from benchmark.comparison.layer_comparison import (
     normal_fit_columns,
     statistics_columns,
 )
-from benchmark.comparison.percent_error import PercentError, ProfileError, percent_error, profile_error
+from benchmark.comparison.percent_error import PercentError, ProfileError, percent_error, plain_percent, profile_error
 from benchmark.comparison.samples import ComparisonError, Moments
 from benchmark.comparison.t_tests import (
     PairedT,
@@ -80,6 +80,7 @@ __all__ = [
     "paired_t_test",
     "passing_scale_errors",
     "percent_error",
+    "plain_percent",
     "pooled_t_test",
     "profile_error",
     "replicate_uncertainty",

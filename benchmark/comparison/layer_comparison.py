@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from benchmark.comparison.agreement import BlandAltman, Concordance, bland_altman, concordance
 from benchmark.comparison.distributions import AreaMetric, NormalFit, area_metric, normal_fit, overlap
 from benchmark.comparison.equivalence import Equivalence, HistoryEquivalence, history_equivalence
-from benchmark.comparison.percent_error import PercentError, percent_error
+from benchmark.comparison.percent_error import PercentError, percent_error, plain_percent
 from benchmark.comparison.samples import Result, Row, aligned, plain
 from benchmark.comparison.t_tests import (
     PairedT,
@@ -211,16 +211,18 @@ def describe_equivalence(test: Equivalence) -> str:
     form = test.form.replace("_", "-")
     if not isinstance(test, HistoryEquivalence):
         return f"{verdict} (TOST, {form}: {found})."
+    over_load, worst = (plain_percent(100.0 * share, 3, sign=True) for share in (test.over_load, test.worst))
     return (
-        f"{verdict}: over the load the difference is {100.0 * test.over_load:+.3g} % of it, and at most "
-        f"{100.0 * test.worst:+.3g} % of the largest value. The two one-sided tests (TOST, {form}) take the steps for "
+        f"{verdict}: over the load the difference is {over_load} of it, and at most "
+        f"{worst} of the largest value. The two one-sided tests (TOST, {form}) take the steps for "
         f"independent samples, so that their outcome depends on the number of rows ({found})."
     )
 
 
 def _share(test: Equivalence) -> str:
     scale = 100.0 * test.margin_fraction / test.margin
-    return f"{scale * test.ci90_low:+.3g} to {scale * test.ci90_high:+.3g} % of it"
+    low, high = (plain_percent(scale * end, 3, sign=True) for end in (test.ci90_low, test.ci90_high))
+    return f"{low.removesuffix(' %')} to {high} of it"
 
 
 def _percent(fraction: float) -> str:

@@ -11,6 +11,12 @@ UNLOADED = 1e-9
 """A FEM value below this fraction of its own largest magnitude counts as unloaded: no percentage there."""
 
 
+def plain_percent(value: float, digits: int = 2, *, sign: bool = False) -> str:
+    """A percentage in so many significant digits, always without a power of ten: -200 is "-200 %", not "-2e+02 %"."""
+    plain = np.format_float_positional(value, digits, unique=False, fractional=False, trim="-", sign=sign)
+    return f"{plain} %"
+
+
 @dataclass(frozen=True)
 class PercentError(Result):
     """Signed error of each step and its summary.

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import math
 import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -16,10 +16,12 @@ from typing import Any, Final
 import pandas as pd
 
 from bench_hw.storage.regular_file import DOCUMENT, read_regular
+from benchmark.comparison.percent_error import plain_percent
 from benchmark.errors import InputError
+from benchmark.verification.cases import all_cases, families
 from reports.manifest import foreign_files, read_manifest
 
-SYNTHETIC, CIRCULAR = "synthetic data", "circular: fitted to these trials"
+SYNTHETIC, CIRCULAR, PARTIAL = "synthetic data", "circular: fitted to these trials", "a part of the cases alone"
 AGAINST = "speaks against"
 
 
@@ -132,7 +134,18 @@ def _of_verification(result: ResultFolder) -> Iterator[Evidence]:
     passed = sum(bool(case["passed"]) for case in cases)
     sources = len({case["source"] for case in cases})
     says = f"{passed} of {len(cases)} values within what is allowed, against {sources} published or closed solutions."
-    yield Evidence("closed_forms", says, result.file(result.name), () if passed == len(cases) else (AGAINST,))
+    limits = (PARTIAL,) if (left := _left_out(cases)) else ()
+    says += f" Of the families of cases were not run: {', '.join(left)}." if left else ""
+    yield Evidence(
+        "closed_forms", says, result.file(result.name), limits if passed == len(cases) else (*limits, AGAINST)
+    )
+
+
+def _left_out(cases: Sequence[Mapping[str, Any]]) -> tuple[str, ...]:
+    """Families of verification cases of which none is among some that were run; none where none of ours is."""
+    known = families(all_cases())
+    run = {str(case.get("case", "")).partition("/")[0] for case in cases}
+    return tuple(each for each in known if each not in run) if run & set(known) else ()
 
 
 def _of_check(result: ResultFolder) -> Iterator[Evidence]:
@@ -266,9 +279,10 @@ def _second_model(found: Mapping[str, Any], source: str) -> Iterator[Evidence]:
     what, worst = max(compared.items(), key=lambda each: each[1]["percent_error_max"])
     margin = 100 * found["equivalence_margin"]
     same = all(entry["equivalent"] for entry in compared.values())
-    shown = f"{'equivalent' if same else 'equivalence is not shown'} within {margin:.2g} % in all of"
+    shown = f"{'equivalent' if same else 'equivalence is not shown'} within {plain_percent(margin)} in all of"
+    wave, fem = (found["models"][model]["name"] for model in ("wave", "fem"))
     says = (
-        f"{found['name']}: wave model against finite elements within {worst['percent_error_max']:.2g} % ({what}); "
+        f"{found['name']}: {wave} against {fem} within {plain_percent(worst['percent_error_max'])} ({what}); "
         f"{shown} {', '.join(compared)}."
     )
     yield Evidence("second_model", says, source, () if same else (AGAINST,))
@@ -322,7 +336,8 @@ def _by_condition(result: ResultFolder, limits: tuple[str, ...]) -> Iterator[Evi
         error, uncertainty, data = (float(row[name]) for name in ("E_N", "u_val_N", "D_N"))
         if abs(error) > 2 * uncertainty > 0.0:
             who = f"{row['simulation']}, peak force of {row['condition']} ({row['protocol']})"
-            says = f"{who}: {100.0 * error / data:+.2g} % off, |E| is {abs(error) / uncertainty:.2g} u_val."
+            off = plain_percent(100.0 * error / data, sign=True)
+            says = f"{who}: {off} off, |E| is {abs(error) / uncertainty:.2g} u_val."
             yield Evidence("agreement", says, source, (*limits, AGAINST))
 
 

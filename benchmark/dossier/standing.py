@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from benchmark.dossier.context import Context
-from benchmark.dossier.evidence import AGAINST, CIRCULAR, SYNTHETIC, Evidence, ResultFolder
+from benchmark.dossier.evidence import AGAINST, CIRCULAR, PARTIAL, SYNTHETIC, Evidence, ResultFolder
 from benchmark.dossier.factors import FACTORS, Factor, Question
 
 SHOWN, WEAK, PARTLY, MISSING, CONTRADICTED = "shown", "weak", "partly", "missing", "contradicted"
+MEASURED = "force over depth"
 COMPARED = {
-    "force over depth": "tables/measured.csv",
+    MEASURED: "tables/measured.csv",
     "maximum deformation": "tables/max_deformation.csv",
     "deflection profile": "tables/profile.csv",
 }
@@ -57,7 +58,7 @@ class Standing:
     def limits(self) -> tuple[str, ...]:
         """Why the evidence shows less than it seems to."""
         told = {limit for each in self.evidence for limit in each.limits}
-        return tuple(each for each in (AGAINST, SYNTHETIC, CIRCULAR) if each in told)
+        return tuple(each for each in (AGAINST, SYNTHETIC, CIRCULAR, PARTIAL) if each in told)
 
 
 def standing_of(evidence: Iterable[Evidence]) -> tuple[Standing, ...]:
@@ -93,18 +94,19 @@ def _compared(quantity: str, path: Path, results: tuple[ResultFolder, ...]) -> E
     table = COMPARED[quantity]
     where = [each for each in results if (each.folder / table).is_file()]
     if where:
-        return Evidence("quantities_compared", f"{quantity}: compared.", where[0].file(table))
+        how = "compared with trials" if quantity == MEASURED else "compared, code to code"
+        return Evidence("quantities_compared", f"{quantity}: {how}.", where[0].file(table))
     return Evidence("quantities_compared", f"{quantity}: no result compares it.", path.name, (AGAINST,))
 
 
 def _reached(wanted: float, results: tuple[ResultFolder, ...]) -> Iterator[Evidence]:
     """The largest measured force beside the question's."""
     for each in results:
-        table = each.table(COMPARED["force over depth"])
+        table = each.table(COMPARED[MEASURED])
         if table is None or "force_N" not in table:
             continue
         largest = float(table["force_N"].max())
         says = f"Measured to {largest:.3g} N; the question goes to {wanted:.3g} N."
         limits = (SYNTHETIC,) if each.document.get("trials", {}).get("synthetic") else ()
-        yield Evidence("load_range", says, each.file(COMPARED["force over depth"]),
+        yield Evidence("load_range", says, each.file(COMPARED[MEASURED]),
                        limits if largest >= wanted else (*limits, AGAINST))  # fmt: skip

@@ -179,7 +179,7 @@ def _scenario_path(key: str, tissue: Any) -> KeyPath:
     """Where a `--set` key points in a scenario; paths into its tissue begin with "tissue"."""
     head = key.partition(".")[0]
     if head in Scenario.model_fields or head == "schema":
-        _refuse_other_place(key, tissue)
+        refuse_other_place(key, layer_names(tissue), _section_keys())
         return ("tissue", *_tissue_path(key, tissue)) if head == "tissue" else tuple(key.split("."))
     path = layer_path(key, layer_names(tissue))
     if path is None and head not in TISSUE_KEYS:
@@ -187,13 +187,19 @@ def _scenario_path(key: str, tissue: Any) -> KeyPath:
     return ("tissue", *(path or key.split(".")))
 
 
-def _refuse_other_place(key: str, tissue: Any) -> None:
-    """Refuse a layer's key that a section of the layer's name takes for its own; raises InputError."""
-    path = layer_path(key, layer_names(tissue))
-    if path is not None and path[2] in known_keys(Layer) and key not in _section_keys():
+def refuse_other_place(key: str, layers: Iterable[str], sections: Iterable[str]) -> None:
+    """Refuse the key of a layer that a section of the layer's name, with its dotted keys, takes for its own.
+
+    Raises
+    ------
+    InputError
+        It says which key is the layer's.
+    """
+    path = layer_path(key, layers)
+    if path is not None and path[2] in known_keys(Layer) and key not in sections:
         name = key.partition(".")[0]
         raise InputError(
-            f"--set {key}: {name} is a section here, which has no such key, and a layer of the tissue; the layer's is "
+            f"--set {key}: {name} is a section here, which has no such key; of a layer of that name it is "
             f"--set tissue.{key}"
         )
 

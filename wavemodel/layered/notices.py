@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from wavemodel.integrators.load_history import History
 from wavemodel.layered.body_options import verified_depth
 from wavemodel.layered.press import Press
@@ -38,13 +40,13 @@ def _strain(press: Press, tool: DiscTool, history: History) -> Iterator[str]:
     if press.field.large is None:
         if deepest > SMALL_STRAIN * height:
             yield (
-                f"layered wave: the deepest press, {deepest * 1e3:.3g} mm, is {100 * deepest / height:.3g} % {of_stack}"
-                f"; this wave is linear, for small strain (up to about {100 * SMALL_STRAIN:.0f} %)"
+                f"layered wave: the deepest press, {deepest * 1e3:.3g} mm, is {_percent(deepest / height, 3)} "
+                f"{of_stack}; this wave is linear, for small strain (up to about {100 * SMALL_STRAIN:.0f} %)"
             )
         return
     if pressed > verified:
         yield (
-            f"layered wave: the deepest press, {pressed * 1e3:.3g} mm, is {100 * pressed / height:.3g} % {of_stack} "
+            f"layered wave: the deepest press, {pressed * 1e3:.3g} mm, is {_percent(pressed / height, 3)} {of_stack} "
             f"and beyond the {verified * 1e3:.3g} mm to which the large-press correction is verified under this tool"
             f"{_continued(press, pressed)}"
         )
@@ -65,7 +67,7 @@ def _continued(press: Press, deepest: float) -> str:
 def _sublayers(press: Press) -> Iterator[str]:
     if press.sublayer_error > SUBLAYER_ERROR:
         yield (
-            f"layered wave: the sub-layers cost {100 * press.sublayer_error:.2g} % of a layer's peak against exact "
+            f"layered wave: the sub-layers cost {_percent(press.sublayer_error)} of a layer's peak against exact "
             "layered elasticity; left automatic they cost 0.05 %"
         )
 
@@ -74,7 +76,7 @@ def _border(press: Press) -> Iterator[str]:
     if press.border_cost > BORDER_COST:
         yield (
             f"layered wave: the border of the {press.field.domain.width * 1e3:.4g} mm window costs up to "
-            f"{100 * press.border_cost:.2g} % of a layer's peak; an automatic window costs 0.1 %"
+            f"{_percent(press.border_cost)} of a layer's peak; an automatic window costs 0.1 %"
         )
 
 
@@ -82,5 +84,11 @@ def _inertia(ringing: float) -> Iterator[str]:
     if ringing > INERTIA:
         yield (
             "layered wave: inertia is left out, though the load changes fast enough for it to add about "
-            f"{100 * ringing:.2g} % of the peak; the integrator 'exact' follows it"
+            f"{_percent(ringing)} of the peak; the integrator 'exact' follows it"
         )
+
+
+def _percent(share: float, digits: int = 2) -> str:
+    """A share in so many significant digits of a percentage, without a power of ten."""
+    plain = np.format_float_positional(100.0 * share, digits, unique=False, fractional=False, trim="-")
+    return f"{plain} %"

@@ -36,6 +36,8 @@ PROFILE_RADII = 4.25
 RESOLUTION = 12.0
 """Largest wavenumber of the modes times the tool's radius."""
 FEWEST_MODES, MOST_MODES = 24, 512
+MOST_GIVEN = 4096
+"""With 2048 a stack of two layers takes 0.2 GB, four times as much with twice as many."""
 REACH, SAMPLES = 8.0, 161
 """The far field is looked at over so many heights of the stack, at so many distances."""
 
@@ -100,7 +102,7 @@ class WaveDiscretisation:
     ------
     WaveError
         If the domain is unknown, the window is not positive, a count is below one, or there are too few modes for the
-        correction.
+        correction, or more than `MOST_GIVEN`.
     """
 
     window: float | None = None
@@ -121,6 +123,8 @@ class WaveDiscretisation:
             raise WaveError(f"place = {self.place} is not allowed: two finite lengths x and y, in m")
         if self.modes is not None and self.modes < 1:
             raise WaveError(f"modes = {self.modes} is not allowed: at least 1")
+        if self.modes is not None and self.modes > MOST_GIVEN:
+            raise WaveError(f"modes = {self.modes} is not allowed: at most {MOST_GIVEN}, or memory runs out")
         if self.sublayers is not None and any(count < 1 for count in self.sublayers):
             raise WaveError(f"sublayers = {self.sublayers} is not allowed: at least 1 in each layer")
         if self.static_correction and self.modes is not None and self.modes < FEWEST_FOR_CORRECTION:

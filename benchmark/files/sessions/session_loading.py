@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from benchmark.errors import InputError
 from benchmark.files.load import Load
@@ -17,6 +17,7 @@ from benchmark.files.loading import (
     layer_names,
     read_file,
     referred,
+    refuse_other_place,
     tissue_from_table,
     tissue_keys,
 )
@@ -156,6 +157,8 @@ def _checked_presses(session: Session) -> list[str]:
 def _session_path(key: str, table: dict[str, Any]) -> KeyPath | None:
     """Where a `--set` key points in session.toml; None where it is for the specimen."""
     head, _, rest = key.partition(".")
+    if head in SECTIONS:
+        refuse_other_place(key, [head], _section_keys())
     if head not in known_keys(SessionFile) or (head == "specimen" and rest):
         return None
     if head == "conditions":
@@ -258,9 +261,14 @@ def _check_key(key: str, tissue: dict[str, Any]) -> None:
     head = key.partition(".")[0]
     if head in (*TISSUE_KEYS, "tissue") or layer_path(key, layer_names(tissue)):
         return
-    sections: dict[str, type[FileModel]] = {"tool": Tool, "support": Support, "camera": Camera}
-    dotted = [f"{name}.{inner}" for name, model in sections.items() for inner in known_keys(model)]
-    raise unknown_key(key, [*dotted, *tissue_keys(tissue), *known_keys(SessionFile)])
+    raise unknown_key(key, [*_section_keys(), *tissue_keys(tissue), *known_keys(SessionFile)])
+
+
+SECTIONS: Final[Mapping[str, type[FileModel]]] = {"tool": Tool, "support": Support, "camera": Camera}
+
+
+def _section_keys() -> list[str]:
+    return [f"{name}.{inner}" for name, model in SECTIONS.items() for inner in known_keys(model)]
 
 
 def _files(trials: Sequence[Trial]) -> list[Path]:

@@ -2,7 +2,7 @@
 // Hands on several tissues at once (the wave, the wave with an effect, finite elements, the published membrane): where
 // each tool is wanted, how fast it gets there, and the record of it. No drawing, no events.
 const Hands = (() => {
-  const MOST = 4, KEPT = 600, LET_GO = 12;
+  const MOST = 4, KEPT = 600, LONGEST = 3600, LET_GO = 12;
 
   class Bench {
     // `tissues` by name; `lead` is the name of the one whose answer is shown.
@@ -82,7 +82,8 @@ const Hands = (() => {
       }
       this.record.push(frame);
       if (this.task?.done) this.whole ??= this.record.slice();
-      while (this.record.length && this.record[0].time < this.time - KEPT) this.record.shift();
+      const from = Math.min(this.time - KEPT, this.task && !this.task.done ? Math.max(this.task.start ?? this.time, this.time - LONGEST) : this.time);
+      while (this.record.length && this.record[0].time < from) this.record.shift();
     }
 
     // The last press of a tool, and whether it was from rest: at most so many rows of [seconds, depth in m].

@@ -9,7 +9,7 @@ import pytest
 
 from bench_hw.capture import trial as trial_module
 from bench_hw.capture.loop import Loop
-from bench_hw.capture.progress import stop_on_signals
+from bench_hw.capture.progress import stop_on_signals, stopped_by
 from bench_hw.capture.session_folder import SessionFolder
 from bench_hw.devices.http_camera import HttpCamera
 from bench_hw.devices.lac import LacActuator
@@ -191,6 +191,14 @@ def test_a_second_ctrl_c_interrupts_whatever_hangs():
         assert stop.wait(5.0)
         with pytest.raises(KeyboardInterrupt):
             os.kill(os.getpid(), signal.SIGINT)
+
+
+@pytest.mark.parametrize(("number", "by"), [(signal.SIGINT, "Ctrl-C"), (signal.SIGTERM, "SIGTERM")])
+def test_what_stops_a_capture_is_told(number, by):
+    with stop_on_signals() as stop:
+        os.kill(os.getpid(), number)
+        assert stop.wait(5.0)
+        assert stopped_by(stop) == by
 
 
 def test_a_session_file_that_cannot_be_written_leaves_the_trial_and_no_tool_in_the_specimen(

@@ -12,9 +12,11 @@ from benchmark.comparison import (
     comparison_summary,
     describe_equivalence,
     describe_t_test,
+    history_equivalence,
     normal_fit_columns,
     paired_equivalence,
     passing_scale_errors,
+    plain_percent,
     pooled_t_test,
     statistics_columns,
 )
@@ -153,3 +155,16 @@ def test_equivalence_names_its_margin(triangle):
     assert shown.startswith("Equivalent within 2 % of the FEM's mean")
     assert not_shown.startswith("Equivalence within 2 % of the FEM's mean is not shown")
     assert "+9.04 to +11 % of it" in not_shown
+
+
+def test_a_percent_keeps_plain_digits():
+    found = [plain_percent(value, sign=True) for value in (-200.0, 1234.0, 0.0123, -15.0)]
+    assert found == ["-200 %", "+1200 %", "+0.012 %", "-15 %"]
+
+
+def test_what_an_equivalence_over_a_history_says_does_not_lean_on_its_p(triangle):
+    text = describe_equivalence(history_equivalence(triangle, -triangle))
+    assert text.startswith(
+        "Equivalence within 2 % of the FEM's mean is not shown: over the load the difference is -200 %"
+    )
+    assert "for independent samples" in text

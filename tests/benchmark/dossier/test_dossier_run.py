@@ -98,3 +98,11 @@ def test_a_result_is_given_once_and_never_written_over(tmp_path, verification) -
         make_dossier([verification], None, verification)
     with pytest.raises(InputError, match="no result is given"):
         make_dossier([], None, tmp_path / "out")
+
+
+def test_what_is_compared_with_another_code_is_not_taken_for_measured(tmp_path) -> None:
+    folder = run_result(tmp_path / "r")
+    (folder / "tables" / "profile.csv").write_text("layer,r_mm,fem_mm,wave_mm\n")
+    (tmp_path / "context.toml").write_text(CONTEXT)
+    made = make_dossier([folder], tmp_path / "context.toml", tmp_path / "out")
+    assert "deflection profile: compared, code to code." in (made.folder / "report.html").read_text()

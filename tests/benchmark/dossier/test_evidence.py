@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmark.dossier.evidence import AGAINST, CIRCULAR, SYNTHETIC, evidence_of, read_result
+from benchmark.dossier.evidence import AGAINST, CIRCULAR, PARTIAL, SYNTHETIC, evidence_of, read_result
 from benchmark.errors import InputError
 from reports import write_json, write_text, write_whole
 
@@ -148,3 +148,20 @@ def test_what_is_no_result_is_refused_by_name(tmp_path) -> None:
     (tmp_path / "fit.json").write_text('{"schema": 1}')
     with pytest.raises(InputError, match="make the result again"):
         evidence_of(read_result(tmp_path))
+
+
+def test_a_part_of_the_verification_is_no_answer_for_all(tmp_path) -> None:
+    cases = [{"case": "hertz/force", "source": "Hertz 1882", "passed": True}]
+    folder = result(tmp_path / "v", {"verification.json": {"schema": 1, "cases": cases}})
+    ((says, limits),) = answers(folder)["closed_forms"]
+    assert limits == (PARTIAL,)
+    assert "were not run: " in says
+
+
+def test_two_models_are_called_by_their_names(tmp_path) -> None:
+    folder = run_result(tmp_path / "r")
+    document = json.loads((folder / "results.json").read_text())
+    document["models"]["fem"]["name"] = "table of my code"
+    (folder / "results.json").write_text(json.dumps(document))
+    says = answers(folder)["second_model"][0][0]
+    assert says.startswith("skin: wave model against table of my code within 0.7 % (fat)")

@@ -1,13 +1,13 @@
-// Reads {body, memory, grid, kind, dt, wait, after} from standard input, does a task with one mouse, which then rests over
+// Reads {body, memory, grid, kind, dt, wait, limit, after} from standard input, does a task with one mouse, which then rests over
 // the tissue for a while, and writes how it went.
 "use strict";
 const [Wave, Hands] = process.argv.slice(2).map((path) => require(path));
-const { body, memory, grid, kind, dt, wait, after = 0 } = JSON.parse(require("fs").readFileSync(0, "utf8"));
+const { body, memory, grid, kind, dt, wait, limit = 60, after = 0 } = JSON.parse(require("fs").readFileSync(0, "utf8"));
 const tissue = new Wave.InteractiveTissue(new Wave.RadialBody(body), Wave.grid(...grid), Hands.MOST, memory);
 const bench = new Hands.Bench({ wave: tissue }, "wave");
 bench.task = new Hands.Task(kind, grid[0], tissue.body.deepest);
 let k = -1, aim = -1, air = 0, refused = 0;
-while (!bench.task.done && bench.time < 60) {
+while (!bench.task.done && bench.time < limit) {
   const [target] = bench.task.current;
   if (k >= 0 && target.number !== aim) { bench.lift(k); k = -1; air = 0; }
   if (k < 0 && (air += dt) >= wait) {

@@ -176,6 +176,15 @@ def test_the_record_of_a_task_ends_with_it(wave):
         assert answer["csv"] == saved["csv"]
 
 
+def test_a_task_that_takes_longer_than_what_is_kept_has_its_beginning(wave):
+    """Ten minutes are kept, of a task all, up to an hour."""
+    answer = six_presses(wave, wait=150.0, dt=0.1, limit=1200.0)
+    times = [float(line.split(",")[0]) for line in answer["csv"].splitlines()[1:]]
+    assert answer["done"]
+    assert times[-1] > 800.0
+    assert times[0] < 151.0
+
+
 def test_one_mouse_is_one_hand_on_a_tissue_that_is_slow_to_return(wave, tmp_path):
     """Six presses with a memory that outlasts them all take as long as without, and the record has one tool."""
     answers = [

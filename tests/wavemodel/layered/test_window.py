@@ -33,6 +33,7 @@ from wavemodel.layered.window import (
     [
         ({"window": 0.0}, "window = 0 m"),
         ({"modes": 0}, "modes = 0"),
+        ({"modes": 100_000}, "modes = 100000 is not allowed: at most 4096"),
         ({"sublayers": (1, 0, 2)}, "sublayers"),
         ({"modes": 7, "static_correction": True}, "at least 8"),
     ],

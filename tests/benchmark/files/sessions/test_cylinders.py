@@ -31,6 +31,11 @@ def test_what_a_person_says_comes_first(key, tmp_path):
     assert {trial.support.kind for trial in session.trials} == {"bonded"}
 
 
+def test_the_key_of_a_layer_that_is_named_like_a_section_is_told(tmp_path):
+    with pytest.raises(InputError, match=r"tool is a section here.* --set tissue\.tool\.youngs_modulus"):
+        load_session(cylinder_workbook(tmp_path, "Druckversuch"), {"tool.youngs_modulus": "3 kPa"})
+
+
 def test_a_narrow_plate_and_friction_are_refused(tmp_path):
     file = cylinder_workbook(tmp_path, "Druckversuch")
     told = {"support.kind": "plates", "support.specimen_radius": "10 mm"}
