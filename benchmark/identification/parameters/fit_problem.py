@@ -16,7 +16,8 @@ from benchmark.identification.parameters.presses.press_surrogate import Forward,
 from benchmark.response.force_curve import Array
 
 WEAK = 2.0
-"""Standard deviation of a free parameter's logarithm round its start (sevenfold): it stops what no data hold."""
+"""Standard deviation of a free parameter's logarithm round its start (sevenfold; of one of either sign, of its
+coordinate round none): it stops what no data hold."""
 ERROR_LIMITS = (-0.1, 0.1)
 """Bounds of each coordinate of the model's own error."""
 AGREES, AGREES_TOUCHING = 5e-4, 1.5e-3
@@ -132,7 +133,8 @@ def priors(problem: FitProblem) -> tuple[Array, Array]:
     mean, precision = np.zeros(problem.size), np.append(np.zeros(len(problem.parameters)), own)
     for k, one in enumerate(problem.parameters):
         value, deviation = (one.start, WEAK) if one.prior is None else (one.prior.value, one.prior.deviation)
-        mean[k], precision[k] = one.coordinate(value), deviation**-2
+        either = one.signed and one.prior is None
+        mean[k], precision[k] = 0.0 if either else one.coordinate(value), deviation**-2
     return mean, precision
 
 

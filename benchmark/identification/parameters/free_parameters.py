@@ -1,8 +1,8 @@
 """The parameters of a fit: their keys, values and bounds, the coordinate each is fitted in, and a set-up with them.
 
 Coordinates are logarithms of values, so that steps are shares; Poisson's ratio has log(1 - 2 nu), in which a nearly
-incompressible layer answers evenly. A layer's `youngs_modulus` takes all stresses of its law along, except constants
-that have a value of their own in the same fit.
+incompressible layer answers evenly, and Ogden's power, which may be negative, arsinh(alpha). A layer's `youngs_modulus`
+takes all stresses of its law along, except constants that have a value of their own in the same fit.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from benchmark.files import Setup, Tissue, Tool, units
 from benchmark.files.overrides import layer_path
 from benchmark.files.tissue import Layer, scaled_layer
 from benchmark.files.units import Dimension, shown
-from benchmark.identification.parameters.law_shapes import LAW_SHAPES, shear_modulus, with_law
+from benchmark.identification.parameters.law_shapes import LAW_SHAPES, POWER, shear_modulus, with_law
 from benchmark.response.force_curve import Array
 from benchmark.response.setup_change import RADIUS, THICKNESS, changed_setup
 
@@ -39,6 +39,8 @@ SHARE, TIME = ".relaxation.g", ".relaxation.tau"
 FAR = 30.0
 """A parameter without bounds of its own may go this many times up or down."""
 POISSON_BOUNDS = (0.05, 0.4995)
+LEAST_POWER = 0.01
+"""Ogden's power is no nearer to none, where his law tends to Hencky's."""
 SHARE_BOUNDS, TIME_BOUNDS = (1e-3, 0.95), (1e-2, 1e4)
 
 
@@ -106,11 +108,24 @@ class Parameter:
 
     def coordinate(self, value: float) -> float:
         """The coordinate of a value."""
+        if self.signed:
+            return math.asinh(value)
         return math.log(1.0 - 2.0 * value) if self._bulk else math.log(value)
 
     def value(self, coordinate: float) -> float:
         """The value at a coordinate."""
+        if self.signed:
+            return math.copysign(max(abs(math.sinh(coordinate)), LEAST_POWER), coordinate)
         return 0.5 * (1.0 - math.exp(coordinate)) if self._bulk else math.exp(coordinate)
+
+    def share(self, value: float) -> float:
+        """By what share of itself a value that is no Poisson's ratio changes with its coordinate."""
+        return math.hypot(1.0, value) / value if self.signed else 1.0
+
+    @property
+    def signed(self) -> bool:
+        """Whether it may be negative."""
+        return self.key == POWER
 
     @property
     def limits(self) -> tuple[float, float]:

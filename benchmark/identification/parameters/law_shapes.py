@@ -13,6 +13,9 @@ from benchmark.errors import InputError
 from benchmark.files import Tissue
 from benchmark.files.tissue import Fibre, Gent, Hyperelastic, Layer, MooneyRivlin, NeoHookean, Ogden, OgdenTerm, Yeoh
 
+POWER = "law.alpha"
+"""Ogden's power, of either sign: mu has the same one, so that mu alpha / 2, the shear modulus at rest, is above 0."""
+
 
 @dataclass(frozen=True)
 class LawShape:
@@ -71,7 +74,7 @@ LAW_SHAPES: Mapping[str, LawShape] = {
     "mooney_rivlin": LawShape("law.c01_over_c10", 0.3, 0.003, 30.0, _mooney_rivlin, "c01 over c10"),
     "yeoh": LawShape("law.c20_over_c10", 0.1, 1e-3, 10.0, _yeoh, "c20 over c10"),
     "gent": LawShape("law.jm", 3.0, 0.3, 300.0, _gent, "the strain measure jm at which the law locks"),
-    "ogden": LawShape("law.alpha", 4.0, 0.5, 40.0, _ogden, "the power alpha of the stretches"),
+    "ogden": LawShape(POWER, 4.0, -40.0, 40.0, _ogden, "the power alpha of the stretches"),
     "fibres": LawShape(
         "law.k1_over_c10",
         1.0,

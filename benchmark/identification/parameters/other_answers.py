@@ -3,21 +3,22 @@
 Force over depth under one tool may have the same shape for two specimens, so that sensitivities at either are sharp and
 yet neither is known. The model is pressed on both sides of what was found, along the directions that are known least;
 on the tables that know these presses the fit is begun again from each, and where it ends elsewhere the model is pressed
-there, too.
+there, too. A parameter of either sign is fitted from both, and the better fit goes on.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
 from benchmark.errors import SolverError
-from benchmark.identification.parameters.fit_problem import ERROR_LIMITS
+from benchmark.identification.parameters.fit_problem import ERROR_LIMITS, round_limits
 from benchmark.identification.parameters.free_parameters import Parameter
 from benchmark.identification.parameters.identifiability import directions
-from benchmark.identification.parameters.layer_fit import SEARCH, LayerFit, knowing
+from benchmark.identification.parameters.layer_fit import SEARCH, LayerFit, fit_layers, knowing
 from benchmark.identification.parameters.layer_model import LayerModel
 from benchmark.identification.parameters.pressed_set_ups import disagreement, joined, press_all
 from benchmark.response.force_curve import Array
@@ -41,7 +42,7 @@ LATELY = 4.0
 
 def other_answers(found: LayerFit, say: Callable[[str], None]) -> tuple[LayerFit, tuple[LayerFit, ...]]:
     """The best answer, and those that the trials do not tell from it (95 %), with the same noise and scatter."""
-    starts: list[Array] = []
+    found, starts = _better_sign(found, say)
     for step in _steps(found):
         explored_fit, at = _explored(found, found.vector + step)
         if at is not None:
@@ -60,6 +61,40 @@ def other_answers(found: LayerFit, say: Callable[[str], None]) -> tuple[LayerFit
 def behind(other: LayerFit, best: LayerFit) -> float:
     """How much worse an answer follows the trials, in -2 log likelihood."""
     return max(2.0 * (other.fit.objective - best.fit.objective), 0.0)
+
+
+def _better_sign(found: LayerFit, say: Callable[[str], None]) -> tuple[LayerFit, list[Array]]:
+    """The better of the fits that begin on either side of none, and where the other one ended.
+
+    The second one begins where the first did, with what is of either sign as far on the other side; where the bounds
+    or the model hold none of that the fit stays as it is.
+    """
+    problem, begin = found.problem, found.problem.start.copy()
+    low, high = limits(problem.parameters, begin.size)
+    signed = [k for k in problem.free if problem.parameters[k].signed]
+    begin[signed] = np.clip(-np.copysign(begin[signed], found.vector[signed]), low[signed], high[signed])
+    if (begin[signed] * found.vector[signed] >= 0.0).all():
+        return found, []
+    explored, at = _explored(found, begin)
+    if at is None:
+        return found, []
+    say("the other sign")
+    low, high = round_limits(problem, at)
+    other = replace(explored, fit=replace(explored.fit, vector=at, model=explored.model.within(low, high)))
+    other = fit_layers(other, say)
+    best, rest = sorted((explored, other), key=_likelihood)
+    return knowing(best, rest.model.surrogates), [rest.vector]
+
+
+def _likelihood(found: LayerFit) -> float:
+    """-2 log likelihood of trials and gains, each fit with the noise and the scatter that it found."""
+    model = found.model
+    size = len(model.trials) * math.log(model.gain_deviation)
+    for white, noise in zip(model.white, model.noise, strict=True):
+        size += float(np.log(white.scale * noise).sum())
+    for film in (film for film in model.film_noise if film is not None):
+        size += float(np.log(np.outer(film.whitener.scale, film.deviation)).sum())
+    return 2.0 * (found.fit.objective + size)
 
 
 def _steps(found: LayerFit) -> list[Array]:

@@ -29,7 +29,7 @@ from benchmark.identification.parameters.free_parameters import (
     value_of,
     with_values,
 )
-from benchmark.identification.parameters.law_shapes import law_shape
+from benchmark.identification.parameters.law_shapes import POWER, law_shape
 from benchmark.identification.parameters.layer_model import FitTrial
 from benchmark.identification.parameters.presses.marker_rings import MarkerRings, MarkerRows, rings_of
 from benchmark.identification.parameters.presses.model_error import LARGEST
@@ -276,9 +276,11 @@ def _informed(parameter: Parameter, wish: FitTable) -> Parameter:
     key = parameter.key
     if key in wish.bounds:
         low, high = (quantity(key, end) for end in wish.bounds[key])
-        if not 0.0 < low < high:
-            raise InputError(f"[fit.bounds] {key}: allowed are two values above 0, the lower one first")
-        start = min(max(parameter.start, low * (1.0 + 1e-6)), high * (1.0 - 1e-6))
+        if not low < high or (low <= 0.0 and not parameter.signed):
+            above = "" if parameter.signed else " above 0"
+            raise InputError(f"[fit.bounds] {key}: allowed are two values{above}, the lower one first")
+        inside = 1e-6 * (high - low)
+        start = min(max(parameter.start, low + inside), high - inside)
         parameter = replace(parameter, low=low, high=high, start=start)
     if key in wish.priors:
         entry = wish.priors[key]
@@ -307,6 +309,8 @@ def quantity(key: str, text: str | float) -> float:
 
 def _deviation(key: str, value: float, share: float) -> float:
     """Standard uncertainty of a coordinate from that of its value, as a share."""
+    if key == POWER:
+        return share * abs(value) / math.hypot(1.0, value)
     return 2.0 * value * share / (1.0 - 2.0 * value) if key.endswith(POISSON) else share
 
 

@@ -221,7 +221,8 @@ def _chain(parameter: Parameter, values: Values, setup: Setup) -> dict[str, floa
         return {}
     if key.startswith("law."):
         shapes = [_shape_chain(name, values[key], setup) for name in setup[0].layer_names]
-        return {name: weight for chain in shapes for name, weight in chain.items()}
+        share = parameter.share(values[key])
+        return {name: share * weight for chain in shapes for name, weight in chain.items()}
     layer = key.rpartition(".")[0]
     if last == MODULUS and layer in setup[0].layer_names:
         own = [each for each in values if each.startswith(f"{layer}.hyperelastic.")]
