@@ -20,6 +20,7 @@ import numpy as np
 
 from benchmark.identification.parameters.layer_fit import LayerFit
 from benchmark.identification.parameters.layer_model import MM, LayerModel
+from benchmark.identification.parameters.mixed_effects import course_left
 from benchmark.identification.parameters.presses.model_error import COUNT, PLAIN, functions
 from benchmark.identification.parameters.presses.press_surrogate import GRID
 from benchmark.response.force_curve import Array
@@ -29,6 +30,10 @@ KNOWN = math.log(2.0)
 """A parameter is determined where its interval ends within a factor of two, either way. Wider is said to be unknown."""
 LARGEST_ERROR = KNOWN / 1.96
 """Standard error of a logarithm, by the trials alone, up to which a parameter can be determined: 35 %."""
+LEFT_NOISES = 3.0
+"""Times the noise of their records from which on what a law leaves of trials is told of."""
+LEFT_ALIKE = 3e-3
+"""Share of the force from which on what trials leave alike is told of: a law may be 14 % off with that."""
 
 SHOWN = 0.2
 """Parts of a direction smaller than this share of the largest are left out of its words."""
@@ -200,3 +205,22 @@ def discrepancy_use(found: LayerFit) -> DiscrepancyUse | None:
     known = scaled_inverse(total[np.ix_(kept, kept)])
     shares = {problem.parameters[k].key: 1.0 - known[k, k] / found.fit.covariance[k, k] for k in problem.free}
     return DiscrepancyUse(100.0 * problem.discrepancy, tuple(taken), {k: float(v) for k, v in shares.items()})
+
+
+def unfollowed(found: LayerFit) -> list[str]:
+    """A warning for each press whose trials leave alike what is much more than the noise of their records.
+
+    The memory of the noise takes it for chance, and intervals are those of a law that does not hold.
+    """
+    problem, said = found.problem, []
+    for number, (left, noise) in enumerate(zip(*course_left(found.fit), strict=True)):
+        press, bend = problem.presses[number], problem.errors[number].bend
+        force = np.median([np.ptp(one.data.force) for one in problem.trials if one.press == number])
+        if left > max(LEFT_ALIKE * force, LEFT_NOISES * max(noise, bend * force)):
+            said.append(
+                f"the law does not follow the trials under the tool of {MM * press.setup[1].radius:.3g} mm: residual "
+                f"{left:.2g} N, noise {noise:.2g} N ({100.0 * left / force:.2g} and {100.0 * noise / force:.2g} % of "
+                "the force). The values are those of another law, and their intervals, which trust it, may be far too "
+                "narrow; try another --law, or let the command discover say what is missing"
+            )
+    return said

@@ -19,11 +19,13 @@ from benchmark.identification.parameters.held_out import HeldOut, contradiction,
 from benchmark.identification.parameters.identifiability import (
     KNOWN,
     LARGEST_ERROR,
+    LEFT_NOISES,
     Direction,
     correlation_words,
     directions,
     discrepancy_use,
     errors_alone,
+    unfollowed,
 )
 from benchmark.identification.parameters.layer_fit import LayerFit
 from benchmark.identification.parameters.layer_model import MM
@@ -43,8 +45,8 @@ ONE_BY_ONE = (
 PRIOR_ALONE = "on its prior alone"
 FAR = 2.0
 """Standard uncertainties beyond which a told value of the set-up has moved far: one in twenty does by chance."""
-LEFT, LEFT_NOISES = 0.02, 3.0
-"""Share of the force, and times what samples scatter by, from which on what a law leaves is told of."""
+LEFT = 0.02
+"""Share of the force from which on what a law leaves is told of, where it is `LEFT_NOISES` times samples' scatter."""
 CONTRADICTED = 5.0
 """Standard uncertainties beyond which the trials contradict what was told: one in two million does by chance."""
 
@@ -253,12 +255,17 @@ class Identified:
         left, noise = np.array([(rms / np.ptp(one.data.force), own / np.ptp(one.data.force)) for rms, own, one in of]).T
         return left, noise
 
+    @cached_property
+    def _unfollowed(self) -> list[str]:
+        """A warning for each press whose trials leave alike what is no noise."""
+        return unfollowed(self.found)
+
     @property
     def _leaves(self) -> list[str]:
         """A warning where the law leaves much of the force, and much more than noise."""
         left, noise = (float(np.median(each)) for each in self._left)
         if left <= max(LEFT, LEFT_NOISES * noise):
-            return []
+            return self._unfollowed
         return [
             f"the law leaves {100.0 * left:.2g} % of the force (median over trials of the root mean square), where "
             f"samples scatter by {100.0 * noise:.2g} %: the values are those of a law that does not follow these "

@@ -14,7 +14,9 @@ from typing import Any
 import numpy as np
 import scipy
 
-from benchmark.identification.parameters.layer_model import GAIN, FilmNoise, LayerModel
+from benchmark.identification.parameters.layer_model import GAIN, MM, TOUCH, FilmNoise, LayerModel
+from benchmark.identification.trial_data import TrialData
+from benchmark.identification.trial_features import sample_noise
 from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import TrialsFit
 from benchmark.response.noise import restricted_noise, whitener
@@ -23,6 +25,10 @@ RATIOS = np.concatenate([[0.0], np.geomspace(1e-3, 1e4, 281)])
 """Variance between over variance within that are tried."""
 CHI_SQUARED = 3.841
 LEAST_SCATTER = 1e-3
+CELLS = 12
+"""Of depth on the way down, and as many on the way up, in which trials are compared."""
+CLEAR_OF_TOUCH, LEAST_AIR = 0.02, 10
+"""Rows so much of the travel above the touch are in the air, and so many tell the noise there."""
 LEAST_FILM_NOISE = 1e-9
 """m."""
 
@@ -119,6 +125,63 @@ def _criterion(ratio: float, counts: Array, means: Array, inside: float) -> tupl
     variance = max(total / freedom, 1e-300)
     value = freedom * np.log(variance) + float(np.sum(np.log1p(counts * ratio))) + float(np.log(np.sum(weight)))
     return value, float(np.sqrt(variance))
+
+
+def course_left(fit: TrialsFit[LayerModel]) -> tuple[Array, Array]:
+    """What a fit leaves of the force of each press' trials alike, and the noise of their records, both (P,) N.
+
+    Trials of one press share what a law does not follow: the mean of what is left at a depth on the way down, or up,
+    less what chance leaves of a mean. The noise is told without the law: the largest of the scatter of samples, of the
+    force in the air and of what is left between trials, which slow noise makes. One trial is taken by itself where it
+    has been in the air, else its share is 0.
+    """
+    model, out = fit.model, []
+    predicted = model.predicted(fit.vector, fit.nuisance)
+    errors = [one.data.force - force for one, force in zip(model.trials, predicted, strict=True)]
+    for press in range(len(model.surrogates)):
+        own = [k for k, one in enumerate(model.trials) if one.press == press]
+        if not own:
+            out.append((0.0, 0.0))
+            continue
+        touches, trials = fit.nuisance[own, TOUCH] / MM, [model.trials[k].data for k in own]
+        air = [_in_air(one, touch) for one, touch in zip(trials, touches, strict=True)]
+        noise = float(np.median(np.fmax(air, [sample_noise(one.force) for one in trials])))
+        if len(own) < 2:
+            lone = float(np.sqrt(np.mean(errors[own[0]] ** 2))) if np.isfinite(air[0]) else 0.0
+            out.append((lone, noise))
+            continue
+        places = [_places(one, touch) for one, touch in zip(trials, touches, strict=True)]
+        common, between = _shared(places, [errors[k] for k in own])
+        out.append((common, max(noise, between)))
+    return np.array(out).T
+
+
+def _in_air(trial: TrialData, touch: float) -> float:
+    """Standard deviation of the force in the air, N; NaN where there are too few rows."""
+    air = trial.force[trial.depth < touch - CLEAR_OF_TOUCH * float(np.ptp(trial.depth))]
+    return float(np.std(air)) if air.size >= LEAST_AIR else np.nan
+
+
+def _places(trial: TrialData, touch: float) -> Array:
+    """(n,) the cell of each row by its depth, on the way to the deepest and back; -1 in the air."""
+    below = (trial.depth - touch) / max(float(trial.depth.max()) - touch, 1e-12)
+    cell = np.minimum((CELLS * below).astype(int), CELLS - 1)
+    back = np.arange(trial.rows) > int(np.argmax(trial.depth))
+    return np.where(below > 0.0, cell + CELLS * back, -1)
+
+
+def _shared(places: Sequence[Array], errors: Sequence[Array]) -> tuple[float, float]:
+    """Root mean squares of what trials leave alike in cells, less chance's part, and of what they leave apart."""
+    means = np.full((len(places), 2 * CELLS), np.nan)
+    for k, (cells, error) in enumerate(zip(places, errors, strict=True)):
+        for cell in np.unique(cells[cells >= 0]):
+            means[k, cell] = error[cells == cell].mean()
+    told = np.isfinite(means).all(axis=0)
+    if not told.any():
+        return 0.0, 0.0
+    apart = float(np.mean(np.var(means[:, told], axis=0, ddof=1)))
+    alike = float(np.mean(np.mean(means[:, told], axis=0) ** 2)) - apart / len(places)
+    return float(np.sqrt(max(alike, 0.0))), float(np.sqrt(apart))
 
 
 def renoised(fit: TrialsFit[LayerModel], freedom: int) -> tuple[LayerModel, float]:

@@ -54,7 +54,7 @@ def moved(told, deviations):
     vector = np.insert(told.found.vector, len(told.found.problem.parameters), np.log(0.01) + 0.035 * deviations)
     problem = replace(told.found.problem, parameters=(*told.found.problem.parameters, thickness))
     made = replace(told, found=replace(told.found, problem=problem, fit=replace(told.found.fit, vector=vector)))
-    made.__dict__["_left"] = told._left  # whose model knows of no thickness
+    made.__dict__.update(_left=told._left, _unfollowed=told._unfollowed)  # whose model knows of no thickness
     return made
 
 
