@@ -3,8 +3,9 @@
 This is the test of agreement of independent samples: equivalence within the margin is claimed only where both one-sided
 tests reject, which is where the 90 % interval of the difference lies inside the margin (Schuirmann 1987).
 
-The steps of a load history are no samples: written with more rows, the same two curves have a smaller p. Two models
-driven through one history are equivalent where their difference, which has no scatter, is inside the margin.
+The steps of a load history are no samples: written with more rows, the same two curves have a smaller p. Of two models
+driven through one history the test stands beside the verdict: their difference, which has no scatter, is within the
+margin, or it is not.
 """
 
 from dataclasses import dataclass
@@ -81,7 +82,7 @@ class Equivalence(Result):
 
 @dataclass(frozen=True, kw_only=True)
 class HistoryEquivalence(Equivalence):
-    """The paired test over the steps of one load history, and the verdict, which it does not decide.
+    """The paired test over the steps of one load history, beside the verdict, which it does not decide.
 
     Attributes
     ----------
@@ -101,15 +102,18 @@ class HistoryEquivalence(Equivalence):
         return abs(self.over_load) < self.margin_fraction
 
     @property
-    def equivalent(self) -> bool:
-        """Whether it is, and the difference of every step is, of the largest value."""
+    def within_margin(self) -> bool:
+        """Whether it is, and the difference of every step is, of the largest value: with any number of rows alike."""
         return self.on_average and abs(self.worst) < self.margin_fraction
 
     def rows(self) -> list[Row]:
-        """Lines for the statistics table; `p` takes the steps for independent samples."""
-        shares = {"difference over the load %": 100.0 * self.over_load, "largest difference %": 100.0 * self.worst}
-        *tests, verdict = super().rows()
-        return [*tests, *shared_rows(shares), verdict]
+        """Lines for the statistics table; `p` and `equivalent` take the steps for independent samples."""
+        history = {
+            "difference over the load %": 100.0 * self.over_load,
+            "largest difference %": 100.0 * self.worst,
+            "within margin": float(self.within_margin),
+        }
+        return [*super().rows(), *shared_rows(history)]
 
 
 def history_equivalence(fem: ArrayLike, wave: ArrayLike, margin_fraction: float = 0.02) -> HistoryEquivalence:

@@ -103,6 +103,7 @@ class LayerComparison(Result):
             "t_critical": plain(found.pooled.t_critical) if found else None,
             "tost_p": plain(found.equivalence.p_value) if found else None,
             "equivalent": found.equivalence.equivalent if found else None,
+            "within_margin": found.equivalence.within_margin if found else None,
         }
 
 
@@ -207,7 +208,8 @@ def describe_equivalence(test: Equivalence) -> str:
     """One paragraph on the equivalence test, with its margin and, over a load history, what decides instead."""
     margin = f"{100.0 * test.margin_fraction:.3g} % of the FEM's mean"
     found = f"p = {test.p_value:.3g}, 90 % interval of the difference {_share(test)}"
-    verdict = f"Equivalent within {margin}" if test.equivalent else f"Equivalence within {margin} is not shown"
+    same = test.within_margin if isinstance(test, HistoryEquivalence) else test.equivalent
+    verdict = f"Equivalent within {margin}" if same else f"Equivalence within {margin} is not shown"
     form = test.form.replace("_", "-")
     if not isinstance(test, HistoryEquivalence):
         return f"{verdict} (TOST, {form}: {found})."

@@ -278,7 +278,7 @@ def _second_model(found: Mapping[str, Any], source: str) -> Iterator[Evidence]:
         return
     what, worst = max(compared.items(), key=lambda each: each[1]["percent_error_max"])
     margin = 100 * found["equivalence_margin"]
-    same = all(entry["equivalent"] for entry in compared.values())
+    same = all(entry.get("within_margin", entry["equivalent"]) for entry in compared.values())
     shown = f"{'equivalent' if same else 'equivalence is not shown'} within {plain_percent(margin)} in all of"
     wave, fem = (found["models"][model]["name"] for model in ("wave", "fem"))
     says = (

@@ -41,6 +41,7 @@ def test_summary_has_the_keys_of_the_results_file(triangle):
         "t_critical",
         "tost_p",
         "equivalent",
+        "within_margin",
     ]
     assert summary["percent_error_mean"] == pytest.approx(10.0)
     assert summary["p_value"] > 0.05
