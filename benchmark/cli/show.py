@@ -41,14 +41,20 @@ def show_runs(
             print(f"  report: {outcome.report}")
     stopped = [outcome for outcome in outcomes if not outcome.complete]
     if stopped:
-        failures = [
-            f"{model['name']} {model['failure']}{_last(outcome.folder, model)}"
-            for outcome in stopped
-            for model in outcome.document["models"].values()
-            if model["failure"]
-        ]
-        raise SolverError(f"{'; '.join(failures)}. Results up to there are in {stopped[0].folder}, marked incomplete")
+        several = len(outcomes) > 1
+        said = [(f"{outcome.document['name']}: " if several else "") + _stopped(outcome) for outcome in stopped]
+        raise SolverError(". ".join(said))
     return 0
+
+
+def _stopped(outcome: RunOutcome) -> str:
+    """Why the models of a run stopped early, and where what they reached is."""
+    failures = [
+        f"{model['name']} {model['failure']}{_last(outcome.folder, model)}"
+        for model in outcome.document["models"].values()
+        if model["failure"]
+    ]
+    return f"{'; '.join(failures)}. Results up to there are in {outcome.folder}, marked incomplete"
 
 
 def show_discovery(outcome: DiscoveryOutcome, console: Console, *, as_json: bool) -> int:

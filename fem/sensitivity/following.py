@@ -21,6 +21,7 @@ from fem.analysis.record import Record
 from fem.arrays import FloatArray
 from fem.assembly.system import System
 from fem.errors import NotDifferentiableError
+from fem.linear_solver import SingularMatrixError
 from fem.load import Load
 from fem.results.solution import Solution, StepReport
 from fem.sensitivity.changed_equations import ChangedEquations, changed_equations
@@ -74,7 +75,10 @@ class Following:
         evaluation = system.evaluate(state.y, state.pressure)
         if evaluation is None:
             raise ArithmeticError("an accepted state cannot be evaluated")
-        replace(self.equilibrium, system=system).factorise(evaluation)
+        try:
+            replace(self.equilibrium, system=system).factorise(evaluation)
+        except SingularMatrixError as error:
+            raise NotDifferentiableError(f"a state has no derivative: {error}") from error
         remembers = system.remembers
         if remembers:
             self._each(lambda side: side.system.advanced(time - self.time))
@@ -158,12 +162,24 @@ class Following:
 
 
 def _correction(problem: Equilibrium, control: str, unbalanced: FloatArray) -> StateDerivative:
-    """Derivatives by which unbalanced forces (n, k) vanish, with the factors that the solver has."""
-    count = unbalanced.shape[1]
-    if control == "force":
-        return StateDerivative(problem.solver.solve(-unbalanced), np.zeros(count))
-    solved = problem.solver.solve(np.column_stack((-unbalanced, problem.unit_load)))
+    """Derivatives by which unbalanced forces (n, k) vanish, with the factors that the solver has.
+
+    Raises
+    ------
+    NotDifferentiableError
+        If they are no finite numbers, as where the state lies on a limit point.
+    """
+    count, by_force = unbalanced.shape[1], control == "force"
+    right = -unbalanced if by_force else np.column_stack((-unbalanced, problem.unit_load))
+    try:
+        solved = problem.solver.solve(right)
+    except SingularMatrixError as error:
+        raise NotDifferentiableError(f"a state has no derivative: {error}") from error
+    if by_force:
+        return StateDerivative(solved, np.zeros(count))
     free, loaded = solved[:, :count], solved[:, count]
+    if loaded[problem.probe] == 0.0:
+        raise NotDifferentiableError("a state has no derivative: the depth does not depend on the force")
     force = -free[problem.probe] / loaded[problem.probe]
     return StateDerivative(free + loaded[:, None] * force, force)
 

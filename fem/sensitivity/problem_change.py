@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 from fem.arrays import FloatArray
+from fem.errors import FemError
 from fem.problem.problem import Problem
 from fem.results.solution import Solution
 
@@ -20,12 +22,23 @@ class ProblemChange:
         The problem with the parameter on either side of its value; one of them may be the problem itself.
     below, above
         How far the parameter is from its value there, not negative, in its own unit; together above 0.
+
+    Raises
+    ------
+    FemError
+        If they are not so.
     """
 
     less: Problem
     more: Problem
     below: float
     above: float
+
+    def __post_init__(self) -> None:
+        if not (min(self.below, self.above) >= 0.0 and 0.0 < self.width < math.inf):
+            raise FemError(
+                f"below = {self.below:g}, above = {self.above:g}: must be finite, 0 or more, and together above 0"
+            )
 
     @property
     def width(self) -> float:

@@ -10,7 +10,9 @@ import pytest
 import fem
 from fem.analysis.newton import NewtonSettings
 from fem.interactions import active_set
+from fem.linear_solver import SingularMatrixError
 from fem.sensitivity.changed_equations import changed_equations, moved_mesh
+from fem.sensitivity.following import _correction
 
 TIGHT = NewtonSettings(tolerance=1e-13)
 COARSE = fem.Discretisation("coarse")
@@ -182,3 +184,27 @@ def test_what_is_no_number_has_no_derivative() -> None:
     wide = replace(told, tool=replace(told.tool, radius=13e-3))
     with pytest.raises(fem.NotDifferentiableError, match="would meet"):
         fem.differentiate(model, PRESS, {"tool.radius": fem.ProblemChange(told, wide, 0.0, 1.0)})
+
+
+@pytest.mark.parametrize(("below", "above"), [(0.0, 0.0), (float("nan"), 1.0), (float("inf"), 1.0), (-1.0, 2.0)])
+def test_a_change_by_nothing_or_by_no_number_is_refused(below: float, above: float) -> None:
+    with pytest.raises(fem.FemError, match="together above 0"):
+        fem.ProblemChange(tied(), tied(), below, above)
+
+
+@pytest.mark.parametrize(
+    ("control", "part", "message"), [("force", "all", "no derivative"), ("depth", "probe", "force")]
+)
+def test_a_derivative_that_is_no_number_is_said(monkeypatch, control: str, part: str, message: str) -> None:
+    model = fem.prepare(tied())
+    equilibrium = model.equilibrium
+    solved = np.zeros((equilibrium.system.numbering.count, 2))
+
+    def solve(right: np.ndarray) -> np.ndarray:
+        if part == "all":
+            raise SingularMatrixError("the stiffness matrix is singular")
+        return solved
+
+    monkeypatch.setattr(equilibrium.solver, "solve", solve)
+    with pytest.raises(fem.NotDifferentiableError, match=message):
+        _correction(equilibrium, control, solved[:, :1])
