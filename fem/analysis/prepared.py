@@ -17,6 +17,7 @@ from fem.analysis.nonlinear import run_nonlinear
 from fem.analysis.record import Record
 from fem.linear_solver import IterativeSolver
 from fem.load import Load
+from fem.mesh.quads import Mesh
 from fem.mesh.solid import AnyMesh
 from fem.problem.problem import Problem
 from fem.results.fields import FieldRecovery
@@ -31,6 +32,10 @@ GLUED = "the load history pulls (negative values): the specimen is glued to its 
 BY_DEPTH = "a press by depth may go on from there"
 COARSER = "a coarser mesh, whose elements at the tool's edge fold later, may follow a deeper press"
 ROUNDER = "a larger edge_radius of the tool may follow a deeper press"
+
+FOLDED = 0.0
+"""Cosine between the surface on both sides of a node, below which it has folded: it turns there by more than the right
+angle by which a tool's edge turns it."""
 
 LIFTING = (
     "the load history pulls (negative values): the tool comes off once it pulls more than its adhesion force; a depth "
@@ -142,7 +147,28 @@ class Model:
         advice = ROUNDER if touches else COARSER
         if failure.reason == NONE_NEAR and failure.control == "force":
             advice = f"{BY_DEPTH}, and {advice}"
-        return replace(solution, failure=replace(failure, reason=f"{failure.reason}; {advice}"))
+        reason = f"{failure.reason}{self._folded(solution)}; {advice}"
+        return replace(solution, failure=replace(failure, reason=reason))
+
+    def _folded(self, solution: Solution) -> str:
+        """Where the surface has folded in the last state of equilibrium of a plane mesh, in words, or "".
+
+        At an edge that it is stuck to it may turn as it likes.
+        """
+        reached = solution if solution.last is None else solution.last
+        if not isinstance(self.mesh, Mesh) or not len(reached.time):
+            return ""
+        row = self.mesh.interfaces[0]
+        place = (self.mesh.nodes + reached.displacement[-1])[row]
+        side = np.diff(place, axis=0)
+        side /= np.linalg.norm(side, axis=1)[:, None]
+        turn = np.sum(side[1:] * side[:-1], axis=1)
+        if self.problem.is_stuck:
+            turn[self.mesh.nodes[row[1:-1], 0] == self.problem.tool.radius] = 1.0
+        sharpest = int(turn.argmin())
+        if turn[sharpest] > FOLDED:
+            return ""
+        return f": the surface has folded {1e3 * place[sharpest + 1, 0]:.3g} mm from the axis"
 
     def _bulged(self, solution: Solution) -> Solution:
         """The solution; that of a cylinder with how far its free side goes past the plates, which do not stop it."""

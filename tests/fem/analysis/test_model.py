@@ -150,6 +150,25 @@ def test_a_tool_that_touches_is_told_of_a_rounder_edge():
     assert failure.reason.endswith("a larger edge_radius of the tool may follow a deeper press")
 
 
+def test_a_press_that_stops_says_where_its_surface_has_folded():
+    """At the edge of a tool that it is stuck to it may turn as it likes."""
+    for contact, edge, told in (("rigid_frictionless", 0.5e-3, (5.5e-3, 5e-3)), ("rigid_bonded", None, (5.5e-3,))):
+        layer = fem.Layer("jelly", 1e-2, 1000.0, fem.NeoHookean(3e3, 0.49))
+        model = fem.prepare(
+            fem.Problem((layer,), fem.Tool(5e-3, contact, edge), fem.Support("bonded"), discretisation=COARSE)
+        )
+        whole = model.run(fem.Load("force", [1.0], [1e-3]))
+        assert model._folded(whole) == ""
+        row = model.mesh.interfaces[0]
+        for radius in (5.5e-3, 5e-3):
+            r = model.mesh.nodes[row, 0]
+            n = int(np.abs(r - radius).argmin())
+            moved = whole.displacement.copy()
+            moved[:, row[n + 1 :], 0] -= 2.0 * (r[n + 1 :] - r[n])
+            said = model._folded(replace(whole, displacement=moved))
+            assert said == (f": the surface has folded {1e3 * r[n]:.3g} mm from the axis" if radius in told else "")
+
+
 def test_a_run_that_fails_at_once_is_empty_but_whole():
     soft = fem.Problem(
         (fem.Layer("jelly", 1e-2, 1000.0, fem.NeoHookean(10.0, 0.49)),),
