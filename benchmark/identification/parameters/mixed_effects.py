@@ -153,7 +153,8 @@ def course_left(fit: TrialsFit[LayerModel]) -> tuple[Array, Array]:
         places = [_places(one, touch) for one, touch in zip(trials, touches, strict=True)]
         common, between = _shared(places, [errors[k] for k in own])
         out.append((common, max(noise, between)))
-    return np.array(out).T
+    left, noise = np.array(out).T
+    return left, noise
 
 
 def _in_air(trial: TrialData, touch: float) -> float:
