@@ -56,12 +56,13 @@ from benchmark.discovery.discovery_result import Discovery, Place
 from benchmark.discovery.evidence.gains import conditions, tissue_gain
 from benchmark.discovery.evidence.parameter_evidence import at_bounds, constant, undetermined, unsteady
 from benchmark.discovery.evidence.pool import Listener, Pool, code_version, fingerprint, own_code, pool, silent
-from benchmark.discovery.evidence.selection import Selection, first_gain, ruled_out, select, usable
+from benchmark.discovery.evidence.selection import Selection, first_gain, ruled_out, select, unchosen, usable
 from benchmark.discovery.evidence.shortlist import compared, not_shown, on_all, on_some, promising, remark, screen
 from benchmark.discovery.evidence.told_setup import on_told, setup_first, stands, taken_up
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.files import Session
 from benchmark.physics import Effect, catalogue
+from benchmark.physics.setup_entry import setup_key
 from benchmark.response.elastic_table import TableOf
 
 DEFAULT = Settings()
@@ -287,7 +288,10 @@ def _verified(searched: Searched, settings: Settings) -> _Answer:
     chosen = on_all(base, searched.selection.chosen)
     if chosen is base:
         return _Answer(searched, base, base, before, held_out_residuals(base, base), 0.0)
-    after, plain = detect(chosen, settings), unbent(base, chosen)
+    plain = unbent(base, chosen)
+    if misses_nothing(plain) and not any(setup_key(effect.slug) for effect in chosen.model.effects):
+        return _verified(replace(searched, selection=unchosen(searched.selection)), settings)
+    after = detect(chosen, settings)
     held = held_out_residuals(plain, chosen)
     return _Answer(searched, chosen, plain, after, held, share_left(plain, chosen))
 

@@ -37,7 +37,7 @@ class Facts:
         Whether the base, with its set-up as told where that would need an effect, misses by no more than the stated
         tolerance.
     tiny : bool
-        Whether the base misses by less than finite elements are right to.
+        Whether the base misses by less than finite elements and elastic laws are right to.
     taken_up : bool
         Whether a set-up as far off as people are usually wrong has taken up what the set-up as told would need.
     fitted : bool
@@ -158,7 +158,7 @@ def _nothing(facts: Facts) -> str:
     if facts.tiny and facts.shares:
         return (
             "What simulation and measurement disagree by is within the stated tolerance, and less than "
-            f"{100.0 * criteria.LEAST_FORCE:g} % of the force, to which finite elements are right."
+            f"{100.0 * criteria.LEAST_FORCE:g} % of the force, to which finite elements and elastic laws are right."
         )
     return (
         "No disagreement beyond the base model's own uncertainty is visible "

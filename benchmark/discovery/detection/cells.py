@@ -270,7 +270,7 @@ def within_tolerance(fitted: Fit) -> bool:
 
 
 def misses_nothing(fitted: Fit) -> bool:
-    """Whether force alone is measured, and missed by less than finite elements are right to."""
+    """Whether force alone is measured, and missed by less than finite elements and laws are right to."""
     problem = fitted.model.problem
     peak = max(float(np.abs(trial.signals[:, 0]).max()) for trial in problem.trials)
     return problem.study.layout is None and max(_misses(fitted).values()) < criteria.LEAST_FORCE * peak

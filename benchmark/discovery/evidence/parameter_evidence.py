@@ -272,7 +272,7 @@ def resolved(fitted: Fit, effect: Effect) -> bool:
 
 
 def material(fitted: Fit, effect: Effect) -> bool:
-    """Whether an effect that shows in the force alone adds more to it than finite elements are right to."""
+    """Whether an effect that shows in the force alone adds more than finite elements and elastic laws are right to."""
     trials = fitted.model.problem.trials
     if fitted.model.problem.study.layout is not None or setup_key(effect.slug) is not None:
         return True

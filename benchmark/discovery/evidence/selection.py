@@ -120,6 +120,11 @@ def ruled_out(selection: Selection, lost: AbstractSet[str]) -> Selection:
     return replace(selection, chosen=chosen, rivals=rivals, lookalikes=_names(rivals), own=own)
 
 
+def unchosen(selection: Selection) -> Selection:
+    """The same search with nothing accepted: its candidates stand."""
+    return replace(selection, chosen=selection.base, steps=(), lookalikes={}, rivals={}, own={}, withheld=())
+
+
 def _names(rivals: Mapping[str, Sequence[Fit]]) -> dict[str, tuple[str, ...]]:
     """Look-alikes by the slug of a chosen effect: the last effect of each fit."""
     return {slug: tuple(dict.fromkeys(fit.model.effects[-1].slug for fit in fits)) for slug, fits in rivals.items()}

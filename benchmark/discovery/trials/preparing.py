@@ -24,7 +24,7 @@ from benchmark.discovery.trials.rows import (
     record,
     resting_grid,
 )
-from benchmark.discovery.trials.segments import segments, stages
+from benchmark.discovery.trials.segments import segments, stages, steadied
 from benchmark.discovery.trials.study import ConditionData, Study
 from benchmark.errors import InputError
 from benchmark.files import Camera, Session, Tissue, Trial, stretched_tissue
@@ -142,7 +142,8 @@ def _raw(session: Session, trial: Trial, warnings: list[str]) -> RawTrial:
         raise InputError(f"{place}: force_N does not change; depth without force tells nothing of the tissue.")
     if table.depth.max() <= 0.0:
         raise InputError(f"{place}: depth_mm never rises above 0, so the tool never presses.")
-    time, depth, force = _decimated(table.time, table.depth, table.force)
+    time, read, force = _decimated(table.time, table.depth, table.force)
+    depth = steadied(time, read, force)
     interval = np.diff(time)
     if interval.max() > criteria.LONG_GAP * np.median(interval):
         warnings.append(f"trial {trial.name}: a gap of {interval.max():.3g} s between rows; nothing is filled in")
@@ -151,7 +152,9 @@ def _raw(session: Session, trial: Trial, warnings: list[str]) -> RawTrial:
         raise InputError(f"{place}: the depth never rises by a tenth of its range; a press is needed.")
     seen = marker_frames(trial, session.camera) if session.camera is not None else None
     frames, markers = seen if seen is not None else (None, None)
-    return RawTrial(trial, time, depth, force, acceleration(time, depth), frames, markers, pieces)
+    return RawTrial(
+        trial, time, depth, force, acceleration(time, depth), frames, markers, pieces, steadied=depth is not read
+    )
 
 
 def _decimated(*columns: Array) -> list[Array]:

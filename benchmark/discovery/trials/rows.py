@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from benchmark.discovery import criteria
 from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.trials.marker_layout import Layout, grid
-from benchmark.discovery.trials.segments import Segment
+from benchmark.discovery.trials.segments import FITTED, Segment, scatter_of
 from benchmark.errors import InputError
 from benchmark.files import Camera, Trial
 from benchmark.physics import DepthRecord
@@ -22,14 +22,10 @@ GROWTH = 1.35
 """Each bin is so many times as large as the one before it, away from a turning point."""
 LEAST_BINS = 10
 """Of a segment."""
-FITTED = 5
-"""Rows of a local quadratic."""
 MOST_RECORD = 20_000
 """Rows of a record that is kept whole; of a longer one the raw rows are kept, which are means themselves."""
 SAME_DEPTH = 1e-10
 """Depths that differ by no more are the same, m."""
-OF_NORMAL = 1.4826
-"""A normal standard deviation over the median of the sizes."""
 NEAR = (-0.04, 0.08)
 SPAN = 0.008
 """Bins whose depth comes within `NEAR` (shares of the peak) of contact span no more than `SPAN` of it."""
@@ -42,7 +38,8 @@ BinPlan: TypeAlias = Sequence[tuple[int, Array]]
 class RawTrial:
     """One trial as measured, its repeated rates taken out: (n,) arrays; markers (f, m, 2) at the frames (f,) s.
 
-    A marker that a frame missed is interpolated in time; one that was hardly seen is NaN.
+    A marker that a frame missed is interpolated in time; one that was hardly seen is NaN. Where the depth's scatter was
+    the sensor's, and is taken out of it, `steadied` says so.
     """
 
     trial: Trial
@@ -53,6 +50,7 @@ class RawTrial:
     frames: Array | None
     markers: Array | None
     pieces: tuple[Segment, ...]
+    steadied: bool = False
 
 
 def bin_sizes(rows: int, target: int) -> list[int]:
@@ -107,8 +105,7 @@ def depth_step(depth: Array) -> float:
     """
     known = np.diff(np.unique(depth))
     rounding = known[known > SAME_DEPTH].min(initial=np.inf)
-    scatter = OF_NORMAL * float(np.median(np.abs(np.diff(depth, 3)))) / np.sqrt(20.0) if depth.size > FITTED else 0.0
-    return float(max(rounding if np.isfinite(rounding) else 0.0, 3.0 * scatter))
+    return float(max(rounding if np.isfinite(rounding) else 0.0, 3.0 * scatter_of(depth)))
 
 
 def acceleration(time: Array, depth: Array) -> Array:
@@ -234,10 +231,10 @@ def binned(raw: RawTrial, plan: BinPlan, layout: Layout | None, seen: NDArray[np
 def record(raw: RawTrial, plan: BinPlan, begin: float) -> DepthRecord:
     """The record of the depth that the bins of a plan are means of, on a clock that begins so late, s.
 
-    It is the whole one unless that is very long: it goes with each trial to every process.
+    It is the whole one unless that is very long (it goes with each trial to every process), or scatters.
     """
     whole = raw.trial.table
-    kept = whole if whole.time.size <= MOST_RECORD else raw
+    kept = whole if whole.time.size <= MOST_RECORD and not raw.steadied else raw
     return DepthRecord(kept.time - begin, kept.depth, _edges(raw, plan) - begin)
 
 

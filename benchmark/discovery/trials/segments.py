@@ -1,4 +1,7 @@
-"""A trial's motion in segments between reversals, rests apart, and the stage of each row: phase, cycle and half."""
+"""A trial's motion in segments between reversals, rests apart, and the stage of each row: phase, cycle and half.
+
+A depth whose sensor scatters is made steady first.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +14,11 @@ from numpy.typing import NDArray
 
 from benchmark.discovery import criteria
 from benchmark.discovery.discovery_result import PHASES, Array
+
+FITTED = 5
+"""Rows of a local quadratic, which third differences need as well."""
+OF_NORMAL = 1.4826
+"""A normal standard deviation over the median of the sizes."""
 
 
 @dataclass(frozen=True)
@@ -175,6 +183,86 @@ def _numbered(pieces: list[tuple[int, int, str]]) -> list[Segment]:
         if end > first:
             out.append(Segment(first, end, kind, cycle))
     return out
+
+
+def scatter_of(signal: Array) -> float:
+    """Standard deviation of what a signal (n,) scatters by from row to row, by third differences; 0 for a few rows."""
+    if signal.size <= FITTED:
+        return 0.0
+    return float(OF_NORMAL * np.median(np.abs(np.diff(signal, 3))) / np.sqrt(20.0))
+
+
+def steadied(time: Array, depth: Array, force: Array) -> Array:
+    """A depth (n,), m, without the scatter of its sensor, each stroke and rest by itself; the same one without any.
+
+    A scatter that the force (n,), N, follows is motion and stays. One that it does not follow favours whatever lags in
+    a model, since between two rows that meets their mean (errors in variables), and hides where a stroke ends. Strokes
+    become lines or cubic splines of a few pieces.
+    """
+    if not _scatters(depth, force):
+        return depth
+    out = depth.copy()
+    for first, last in pairwise(_borders_through(time, depth)):
+        whole = slice(first, last + 1)
+        if last - first >= 2 * FITTED:
+            out[whole] = _smooth(time[whole], depth[whole], scatter_of(depth))
+    return out
+
+
+def _scatters(depth: Array, force: Array) -> bool:
+    """Whether a depth scatters by what counts beside the force's own scatter, and the force does not follow it."""
+    scatter, reach = scatter_of(depth), max(float(depth.max()), 1e-300)
+    stiffness = float(np.ptp(force)) / reach
+    if depth.max() <= 0.0 or stiffness * scatter <= criteria.SCATTERS * scatter_of(force):
+        return False
+    inside = depth[:-3] > criteria.IN_CONTACT * reach
+    jumps, answers = np.diff(depth, 3)[inside], np.diff(force, 3)[inside]
+    return float(answers @ jumps) < criteria.ANSWERED * stiffness * float(jumps @ jumps)
+
+
+def _borders_through(time: Array, depth: Array) -> list[int]:
+    """Rows at which the strokes and rests of a scattering motion meet, its ends included."""
+    from scipy.ndimage import uniform_filter1d
+
+    width = criteria.LEVEL_WIDTH * max(float(np.ptp(depth)), 1e-300)
+    rows = int(np.clip((criteria.SMOOTHED * scatter_of(depth) / width) ** 2, FITTED, max(depth.size // 20, FITTED)))
+    pieces = segments(time, uniform_filter1d(depth, rows, mode="nearest"))
+    marks = [0, *(piece.first for piece in pieces[1:]), depth.size - 1]
+    bends = [_bend(time, depth, marks[k - 1 : k + 2], 2 * rows) for k in range(1, len(marks) - 1)]
+    return [0, *bends, depth.size - 1]
+
+
+def _bend(time: Array, depth: Array, marks: Sequence[int], reach: int) -> int:
+    """The row within `reach` of the middle of three marks at which two lines that meet there leave least."""
+    before, at, after = marks
+    rows = range(max(at - reach, before + FITTED), min(at + reach, after - FITTED) + 1)
+    if not rows:
+        return at
+    around = slice(max(before, at - 3 * reach), min(after, at + 3 * reach) + 1)
+    stamps, way = time[around] - time[at], depth[around]
+
+    def left(row: int) -> float:
+        past = np.maximum(stamps - (time[row] - time[at]), 0.0)
+        lines = np.column_stack([np.ones(stamps.size), stamps, past])
+        return float(np.sum((way - lines @ np.linalg.lstsq(lines, way, rcond=None)[0]) ** 2))
+
+    return min(rows, key=left)
+
+
+def _smooth(time: Array, depth: Array, scatter: float) -> Array:
+    """A line, or the cubic spline of as many pieces as Akaike's criterion wants, through a stroke or rest (n,)."""
+    from scipy.interpolate import make_lsq_spline
+
+    pieces = 2 ** np.arange(int(np.log2(max(depth.size / (2 * FITTED), 1.0))) + 1)
+    fits = [np.polynomial.Polynomial.fit(time, depth, 1)]
+    for count in pieces.tolist():
+        inner = np.quantile(time, np.arange(1, count) / count)
+        knots = np.concatenate([[time[0]] * 4, inner, [time[-1]] * 4])
+        fits.append(make_lsq_spline(time, depth, knots))
+    told = [np.asarray(each(time)) for each in fits]
+    sizes = [2, *(pieces + 3)]
+    lost = [np.sum(((depth - each) / scatter) ** 2) + 2.0 * size for each, size in zip(told, sizes, strict=True)]
+    return told[int(np.argmin(lost))]
 
 
 Index = NDArray[np.int64]

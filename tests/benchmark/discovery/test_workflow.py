@@ -152,6 +152,13 @@ def test_what_is_measured_apart_from_the_trials_leaves_of_the_answer_what_stood(
     assert effect.slug not in {each.slug for each in other.known}
 
 
+def test_an_effect_without_which_nothing_is_missed_is_not_named(session_of, monkeypatch):
+    monkeypatch.setattr(workflow, "misses_nothing", lambda fitted: True)
+    answer = findings(session_of(force=fading, noise=0.003), settings=SETTINGS).discovery
+    assert (answer.verdict, answer.effects, answer.remains) == ("cannot_tell", (), ())
+    assert any(each.slugs == ("viscoelastic_relaxation",) for each in answer.candidates)
+
+
 def fading(time, depth, elastic):
     """A Prony term of 12 % and 0.8 s."""
     lost = np.zeros_like(time)

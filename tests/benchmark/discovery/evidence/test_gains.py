@@ -191,15 +191,15 @@ def test_what_records_are_too_coarse_for_is_not_seen(slug, sizes, told):
 def test_what_adds_less_than_finite_elements_are_right_to_is_not_seen_where_force_alone_is(
     monkeypatch, layout, slug, expected
 ):
-    """One trial adds 0.9 mN to 1 N, and in a row without samples more."""
+    """One trial adds 2.4 mN to 1 N, and in a row without samples more."""
     signals, count = np.array([[0.5], [1.0], [0.0]]), np.array([[3.0], [2.0], [0.0]])
     trials = [SimpleNamespace(signals=signals, count=count)] * 2
-    added = [np.array([[9e-4], [-2e-4], [0.1]]), np.zeros((3, 1))]
+    added = [np.array([[2.4e-3], [-2e-4], [0.1]]), np.zeros((3, 1))]
     monkeypatch.setattr(parameter_evidence, "added_by", lambda fitted, slug: added)
     problem = SimpleNamespace(trials=trials, study=SimpleNamespace(layout=layout))
     fitted = SimpleNamespace(model=SimpleNamespace(problem=problem))
     assert material(fitted, SimpleNamespace(slug=slug)) is expected
-    added[1] = np.full((3, 1), -1.1e-3)
+    added[1] = np.full((3, 1), -2.6e-3)
     assert material(fitted, SimpleNamespace(slug=slug))
 
 

@@ -61,7 +61,16 @@ def test_a_depth_that_stays_has_no_step():
 def test_a_record_is_whole_unless_it_is_very_long(rows, kept):
     whole = SimpleNamespace(table=SimpleNamespace(time=np.arange(float(rows)), depth=np.arange(float(rows))))
     few = np.array([10.0, 20.0, 30.0, 40.0])
-    raw = SimpleNamespace(trial=whole, time=few, depth=few, pieces=(SimpleNamespace(first=0, last=4),))
+    pieces = (SimpleNamespace(first=0, last=4),)
+    raw = SimpleNamespace(trial=whole, time=few, depth=few, pieces=pieces, steadied=False)
     made = record(raw, [(0, np.array([0.0, 0.5, 1.0]))], 10.0)
     assert made.time.size == made.depth.size == kept
     assert made.borders.tolist() == [-5.0, 15.0, 35.0]
+
+
+def test_a_record_that_scatters_is_not_kept():
+    whole = SimpleNamespace(table=SimpleNamespace(time=np.arange(9.0), depth=np.arange(9.0)))
+    few = np.array([10.0, 20.0, 30.0, 40.0])
+    pieces = (SimpleNamespace(first=0, last=4),)
+    raw = SimpleNamespace(trial=whole, time=few, depth=few, pieces=pieces, steadied=True)
+    assert record(raw, [(0, np.array([0.0, 0.5, 1.0]))], 10.0).depth.tolist() == few.tolist()

@@ -5,7 +5,7 @@ import pytest
 
 from benchmark.discovery.discovery_result import PHASES
 from benchmark.discovery.trials.rows import bin_means, bin_sizes, fractions
-from benchmark.discovery.trials.segments import reversals, segments, stages, without_dwells
+from benchmark.discovery.trials.segments import reversals, segments, stages, steadied, without_dwells
 
 
 def test_reversals_are_found_through_noise():
@@ -112,3 +112,66 @@ def test_means_keep_a_straight_line():
     means, counts = bin_means(rows, 0, 50, fractions(bin_sizes(50, 12)))
     assert means[:, 1] == pytest.approx(3.0 * means[:, 0])
     assert counts.sum() == 50
+
+
+STIFFNESS = 1500.0
+"""N/m."""
+
+
+def scattering(seed, *, rate=50.0, jitter=0.0, speed=1e-4):
+    """A press of 0.4 mm, held for 3 s: time, true depth, what a sensor reads that scatters by 5 um, force."""
+    rng = np.random.default_rng(seed)
+    time = np.arange(0.0, 11.6, 1.0 / rate)
+    time = time + rng.uniform(-jitter, jitter, time.size) / rate
+    depth = np.interp(time, [0.0, 0.3, 0.3 + 4.6e-4 / speed, 3.3 + 4.6e-4 / speed, 3.3 + 9.2e-4 / speed],
+                      [-6e-5, -6e-5, 4e-4, 4e-4, -6e-5])  # fmt: skip
+    force = STIFFNESS * np.maximum(depth, 0.0)
+    return time, depth, depth + 5e-6 * rng.normal(size=time.size), force + 2e-3 * rng.normal(size=time.size)
+
+
+@pytest.mark.parametrize("jitter", [0.0, 0.4])
+@pytest.mark.parametrize("seed", range(4))
+def test_a_sensor_that_scatters_is_made_steady(seed, jitter):
+    time, depth, read, force = scattering(seed, jitter=jitter)
+    steady = steadied(time, read, force)
+    pressed = depth > 0.0
+    assert np.std((steady - depth)[pressed]) < 1.5e-6
+    assert np.abs(steady - depth)[pressed].max() < 7.5e-6
+    assert [piece.kind for piece in segments(time, steady) if piece.cycle == 1][:3] == ["press", "rest", "retract"]
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_no_delay_gains_by_a_steady_depth(seed):
+    """Half a row's delay meets the mean of two readings: beside the reading itself it gains, and is no clock's."""
+    time, _, read, force = scattering(seed)
+
+    def best(depth):
+        delays = 1e-3 * np.arange(-15.0, 16.0)
+        told = [STIFFNESS * np.maximum(np.interp(time - delay, time, depth), 0.0) for delay in delays]
+        return delays[np.argmin([np.std(force - each) for each in told])]
+
+    assert abs(best(read)) > 7e-3
+    assert abs(best(steadied(time, read, force))) < 6e-3
+
+
+def test_a_motion_that_the_force_follows_stays():
+    time, _, read, _ = scattering(1)
+    force = STIFFNESS * np.maximum(read, 0.0) + 2e-3 * np.random.default_rng(2).normal(size=time.size)
+    assert steadied(time, read, force) is read
+
+
+def test_a_scatter_below_what_the_force_shows_stays():
+    time, depth, _, force = scattering(1)
+    rng = np.random.default_rng(3)
+    read = depth + 1e-7 * rng.normal(size=time.size)
+    assert steadied(time, read, force) is read
+    assert steadied(time, depth, force) is depth
+
+
+def test_a_stroke_of_a_few_rows_stays_as_it_is():
+    time = np.arange(12.0)
+    read = 1e-3 * np.concatenate([np.arange(6.0), np.arange(6.0)[::-1]])
+    read[::2] += 1e-4
+    force = np.zeros(12)
+    force[5] = 1.0
+    assert steadied(time, read, force)[:5].tolist() == read[:5].tolist()
