@@ -24,7 +24,7 @@ from benchmark.discovery.trials.rows import (
     record,
     resting_grid,
 )
-from benchmark.discovery.trials.segments import segments, stages, steadied
+from benchmark.discovery.trials.segments import scatter_of, segments, stages, steadied
 from benchmark.discovery.trials.study import ConditionData, Study
 from benchmark.errors import InputError
 from benchmark.files import Camera, Session, Tissue, Trial, stretched_tissue
@@ -71,8 +71,14 @@ def prepare(session: Session, rows: int) -> Study:
         _condition(session, group, grid, seen, np.array([order[r.trial.name] for r in group]), rows) for group in kept
     )
     interval = float(np.median([np.median(np.diff(r.time)) for r in raw]))
-    step = float(np.median([depth_step(r.trial.table.depth) for r in raw]))
+    step = float(np.median([_step(r) for r in raw]))
     return Study(conditions, grid, camera.distance if camera else None, interval, step, tuple(warnings))
+
+
+def _step(raw: RawTrial) -> float:
+    """The smallest change that a trial's depth shows, m: of one made steady a deviation of what it scattered by."""
+    read = raw.trial.table.depth
+    return scatter_of(read) if raw.steadied else depth_step(read)
 
 
 def _few(session: Session) -> list[str]:

@@ -112,3 +112,17 @@ def test_each_trial_keeps_the_record_that_its_rows_are_means_of(tmp_path, quick_
         )
     assert study.depth_step == pytest.approx(depth_step(condition.records[0].depth), rel=0.5)
     assert study.depth_step > 0.0
+
+
+def test_a_depth_whose_sensor_scatters_is_prepared_steady(tmp_path, quick_session):
+    """Rows, records and the smallest change are those of the steady depth, not of the one that was read."""
+    folder = quick_session.write_session(tmp_path / "session", trials=4, speeds=(3e-3,), noise=1e-4)
+    smooth = prepare(load_session(folder), 400)
+    rng = np.random.default_rng(5)
+    rewrite(folder, lambda table: table + 0.02 * rng.normal(size=(len(table), 1)) * np.array([0.0, 1.0, 0.0]))
+    study = prepare(load_session(folder), 400)
+    (before,), (after,) = smooth.conditions, study.conditions
+    assert np.unique(after.phase).tolist() == np.unique(before.phase).tolist()
+    for made, known in zip(after.records, before.records, strict=True):
+        assert 1e3 * np.std(made.depth - np.interp(made.time, known.time, known.depth)) < 0.01
+    assert 1e3 * study.depth_step == pytest.approx(0.02, rel=0.2)
