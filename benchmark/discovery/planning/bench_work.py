@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import itertools
 import shutil
 import tomllib
@@ -109,7 +110,8 @@ class BenchWork:
     def record(self, proposal: NextExperiment, trials: int, number: int) -> tuple[Path, ...]:
         """Do an experiment; the files of its trials, which lie in the copy of the session.
 
-        What was recorded when the bench ends with a fault, or is interrupted, stays in a folder of the copy.
+        They are numbered on from what lies there: a loop may go on from the session of another. What was recorded
+        when the bench ends with a fault, or is interrupted, stays in a folder of the copy.
 
         Raises
         ------
@@ -118,6 +120,7 @@ class BenchWork:
         InputError
             The bench cannot do it.
         """
+        number = _free(self.folder, number)
         recorded = self.folder / f"experiment_{number}"
         with scratch() as folder:
             protocol = folder / "next_experiment.toml"
@@ -144,6 +147,12 @@ class BenchWork:
     def add(self, proposal: NextExperiment, files: tuple[Path, ...]) -> None:
         """Enter trials into the session file of the copy, with the tool they were made with."""
         enter(self.folder, proposal, [{"file": file.name} for file in files])
+
+
+def _free(folder: Path, number: int) -> int:
+    """The first number from this one on under which no experiment lies in a folder, nor what is left of one."""
+    there = {each.name.split("_")[1].split(".")[0] for each in folder.glob("experiment_*")}
+    return next(each for each in itertools.count(number) if str(each) not in there)
 
 
 def _captured(order: CaptureOrder, specimen: Any) -> tuple[Path, ...]:
@@ -179,13 +188,25 @@ def session_copy(session: Path, folder: Path) -> Path:
 def kept_experiments(session: Path, folder: Path) -> Path | None:
     """Move an earlier copy in which a bench recorded something out of the way; its new place, None where there is none.
 
-    It is what an interrupted loop leaves: a session of its own, beside the hidden folder in which it grew.
+    It is what an interrupted loop leaves: a session of its own, beside the hidden folder in which it grew. Files are
+    told by what is in them: a recording may have the name of another one.
     """
-    if not folder.is_dir() or {each.name for each in folder.iterdir()} <= {each.name for each in session.iterdir()}:
+    if not folder.is_dir() or _contents(folder) <= _contents(session):
         return None
     name = folder.parent.name.removeprefix(".").removesuffix(".unfinished")
     places = (folder.parent.with_name(f"{name}-experiments-{number}") for number in itertools.count(1))
     return folder.rename(next(place for place in places if not place.exists()))
+
+
+def _contents(folder: Path) -> set[bytes]:
+    """What the files below a folder hold, each as a digest, but for the session file, which has no measurement."""
+    files = (each for each in folder.rglob("*") if each.is_file() and each != folder / "session.toml")
+    return {_digest(file) for file in files}
+
+
+def _digest(file: Path) -> bytes:
+    with file.open("rb") as opened:
+        return hashlib.file_digest(opened, "sha256").digest()
 
 
 def enter(folder: Path, proposal: NextExperiment, trials: Sequence[Mapping[str, str]]) -> None:

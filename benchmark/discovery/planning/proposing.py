@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -20,6 +20,7 @@ from benchmark.discovery.trials.study import ConditionData
 from benchmark.discovery.workflow import Findings
 from benchmark.errors import InputError, TissuebenchError
 from benchmark.experiments.menu import (
+    SECOND_TOOLS,
     Experiment,
     Usual,
     menu,
@@ -107,7 +108,9 @@ def propose(
     if len(standing) < 2:
         return None
     first, second = nearest(standing)
-    condition = _own_condition(found.calibrated.base.model.problem.study.conditions, allowed.done)
+    conditions = found.calibrated.base.model.problem.study.conditions
+    allowed = replace(allowed, done=allowed.done | _there(conditions))
+    condition = _own_condition(conditions, allowed.done)
     seen = _with_this_tool(first, second, condition, allowed)
     if table_of is not None:
         seen |= _tools(first, second, condition, table_of, allowed, workers)
@@ -133,6 +136,15 @@ def propose(
         toml=protocol_toml(best.experiment),
         trials=best.trials,
     )
+
+
+def _there(conditions: Sequence[ConditionData]) -> set[str]:
+    """Entries of the menu that a session has a condition of, as one that a loop has grown: none is entered again.
+
+    The session's own press may have changed since, and a condition holds trials of one motion.
+    """
+    entries = {*SECOND_TOOLS, *(each.name for each in menu(Usual(1e-3, 1e-3, 0.0, math.inf)))}
+    return {each.name for each in conditions if each.name in entries or each.name.startswith("tool of ")}
 
 
 def _own_condition(conditions: Sequence[ConditionData], done: AbstractSet[str]) -> ConditionData:

@@ -65,6 +65,45 @@ def test_the_copy_of_an_interrupted_loop_is_kept_and_one_without_recordings_is_n
     assert kept_experiments(folder / "session", copy) is None
 
 
+def test_a_loop_goes_on_from_the_grown_session_of_another_without_touching_its_recordings(bench, proposal) -> None:
+    (other,) = second_tools(USUAL, 5e-3, bench.allowed(set()).radii)
+    bench.add(proposal(other), bench.record(proposal(other), 2, 1))
+    (bench.folder / "experiment_2").mkdir()  # of a bench that failed
+    (bench.folder / "experiment_2" / "trial_001.mcap.part").write_bytes(b"measured")
+    grown = bench.folder
+    first = {each.name: each.read_bytes() for each in grown.glob("*.mcap")}
+    again = replace(bench, folder=session_copy(grown, grown.with_name("again")))
+    again.add(proposal(other), again.record(proposal(other), 2, 1))
+    assert {name: (again.folder / name).read_bytes() for name in first} == first
+    listed = [trial["file"] for trial in tomllib.loads((again.folder / "session.toml").read_text())["trials"]]
+    assert listed == ["a.csv", *(f"experiment_{n}_{k}.mcap" for n in (1, 3) for k in (1, 2))]
+    assert len({(again.folder / name).read_bytes() for name in listed}) == 5  # and no simulated noise comes twice
+    assert (again.folder / "experiment_2" / "trial_001.mcap.part").read_bytes() == b"measured"
+
+
+def test_a_recording_is_kept_though_the_session_has_another_of_its_name(folder, tmp_path) -> None:
+    store = tmp_path / ".found-wave.unfinished"
+    store.mkdir()
+    (folder / "session" / "experiment_1_1.mcap").write_bytes(b"measured before")
+    copy = session_copy(folder / "session", store / "session")
+    (folder / "session" / "session.toml").write_text("name = 'said otherwise since'")
+    assert kept_experiments(folder / "session", copy) is None
+    (copy / "experiment_1_1.mcap").write_bytes(b"measured")
+    kept = kept_experiments(folder / "session", copy)
+    assert (kept / "experiment_1_1.mcap").read_bytes() == b"measured"
+
+
+def test_what_a_failed_experiment_left_in_its_folder_is_kept(folder, tmp_path) -> None:
+    """Though the session has such a folder, too."""
+    store = tmp_path / ".found-wave.unfinished"
+    store.mkdir()
+    (folder / "session" / "experiment_1").mkdir()
+    copy = session_copy(folder / "session", store / "session")
+    (copy / "experiment_1" / "trial_001.mcap.part").write_bytes(b"measured")
+    kept = kept_experiments(folder / "session", copy)
+    assert (kept / "experiment_1" / "trial_001.mcap.part").read_bytes() == b"measured"
+
+
 def test_a_folder_without_a_session_file_is_refused(tmp_path) -> None:
     with pytest.raises(InputError, match=r"--bench needs a session\.toml"):
         session_copy(tmp_path, tmp_path / "copy")

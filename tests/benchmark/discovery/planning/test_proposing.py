@@ -122,6 +122,27 @@ def test_an_experiment_differs_from_the_sessions_own_press_and_not_from_the_expe
     assert _own_condition((wider,), {"wider tool"}) is wider  # a user's own name
 
 
+def test_what_a_session_has_of_the_menu_is_not_proposed_again(monkeypatch) -> None:
+    """A loop goes on from a grown session: no other motion joins its conditions, and they are not its own press."""
+    usual, seen_from = usual_press(_condition("bonded")), []
+
+    def with_this_tool(first, second, condition, allowed):
+        seen_from.append(condition.name)
+        return {"same again": (same_again(usual), 1.0), **{each.name: (each, 9.0) for each in menu(usual)[:3]}}
+
+    monkeypatch.setattr(proposing, "rivals", lambda found: (_rival("a"), _rival("b")))
+    monkeypatch.setattr(proposing, "_with_this_tool", with_this_tool)
+    sizes = {"press": 3, "longer hold": 9, "deeper": 9, "tool of 8 mm": 18, "wider tool": 18}
+    conditions = [
+        SimpleNamespace(size=size, name=name, around=_condition("hole").around) for name, size in sizes.items()
+    ]
+    study = SimpleNamespace(conditions=conditions)
+    base = SimpleNamespace(model=SimpleNamespace(problem=SimpleNamespace(study=study)))
+    found = propose(SimpleNamespace(calibrated=SimpleNamespace(base=base)))
+    assert seen_from == ["press"]
+    assert found.choice == "slower"
+
+
 def test_a_rigid_block_is_for_a_rig_that_gives_way() -> None:
     relaxing = _rival("viscoelastic_relaxation")
     giving = _rival("machine_compliance", machine_compliance={"compliance": 1e-4})
