@@ -35,8 +35,10 @@ class Pooled:
     trials: int
 
     def exp(self) -> Pooled:
-        """The same of the logarithm's argument."""
-        return Pooled(math.exp(self.value), math.exp(self.low), math.exp(self.high), self.trials)
+        """The same of the logarithm's argument; an end beyond all numbers is infinite: the data do not bound it."""
+        with np.errstate(over="ignore"):
+            value, low, high = np.exp([self.value, self.low, self.high]).tolist()
+        return Pooled(value, low, high, self.trials)
 
 
 @dataclass(frozen=True)

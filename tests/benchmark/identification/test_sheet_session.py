@@ -144,6 +144,17 @@ def test_one_trial_is_said_in_the_singular(small, model) -> None:
     assert sheet_headline(fit).startswith(f"force and markers of {fit.stiffness.trials} trials together")
 
 
+def test_a_time_that_one_trial_does_not_bound_has_no_upper_end(small) -> None:
+    """A hold of an elastic sheet: its share is none, and the logarithm of its time has an error of thousands."""
+    _, fit = small
+    time = Pooled(0.2, -2e3, 2e3, 1).exp()
+    assert (time.value, time.low, time.high) == (pytest.approx(1.2214, rel=1e-4), 0.0, np.inf)
+    lone = replace(fit, share=Pooled(0.0, -1e-3, 1e-3, 1), tau=time)
+    assert lone.relaxation.share == 0.0
+    assert "relaxes" not in sheet_headline(lone)
+    assert lone.to_dict()["relaxation_time_s"]["ci95"] == [0.0, np.inf]
+
+
 def test_a_single_trial_without_standard_errors_identifies_nothing(small, model) -> None:
     alone, fit = small
     lone = replace(fit, stiffness=Pooled(1.0, 0.0, np.inf, 1))
