@@ -6,6 +6,7 @@ Among them the `camera.toml`: the rig's own, or the true optics of a simulated c
 from __future__ import annotations
 
 import json
+import shlex
 import shutil
 import tempfile
 import tomllib
@@ -161,7 +162,7 @@ class SessionFolder:
         if not path.is_file():
             empty = not self.path.is_dir() or not any(self.path.iterdir())
             new = "leave --append out for a new one" if empty else "give another --out, without --append, for a new one"
-            raise InputError(f"{path}: there is no session to append to; {new}")
+            raise InputError(f"{path}: there is no session to append to; {new}{self._cut_off()}")
         return read_toml(path)[0]
 
     def _check_same(self, specimen: str) -> None:
@@ -202,7 +203,17 @@ class SessionFolder:
             raise InputError(f"{self.path}: is no folder; give another --out")
         if any(self.path.iterdir()):
             append = ", or --append to add trials to its session" if (self.path / SESSION_FILE).is_file() else ""
-            raise InputError(f"{self.path}: is not empty and nothing in it is overwritten; give another --out{append}")
+            left = f"{append}{self._cut_off()}"
+            raise InputError(f"{self.path}: is not empty and nothing in it is overwritten; give another --out{left}")
+
+    def _cut_off(self) -> str:
+        """What a killed capture left of a trial, and how to get at it; nothing where there is none."""
+        part = next(iter(sorted(self.path.glob("trial_*.mcap.part"))), None)
+        if part is None:
+            return ""
+        whole = part.with_name(part.name.replace(".mcap.part", "_recovered.mcap"))
+        recover = shlex.join(["recover", str(part), "--out", str(whole)])
+        return f". {part.name} was cut off; python -m bench_hw {recover} writes what is whole of it"
 
     def _check_writable(self) -> None:
         try:

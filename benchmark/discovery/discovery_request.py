@@ -21,6 +21,7 @@ from benchmark.discovery.planning.bench_work import (
     BenchWork,
     kept_experiments,
     load_bench,
+    recorded,
     session_copy,
     unattended,
 )
@@ -173,7 +174,7 @@ def _answered(
         proposal = propose(found, fem_or_wave_table(session, ()), workers=DEFAULT.workers)
     else:
         loop = _looped(request, own, listener, store)
-        found, grown = loop.run(), loop.bench.folder
+        found, grown = _run(loop, request, listener), loop.bench.folder
         rounds, stopped = tuple(loop.rounds), loop.stopped
         session, said = _loaded(request, grown, listener)
         proposal = loop.propose(found, loop.bench.allowed({each.choice for each in rounds}))
@@ -252,6 +253,19 @@ def _looped(request: DiscoverRequest, own: tuple[Effect, ...], listener: Listene
         return propose(found, fem_or_wave_table(session, ()), allowed, DEFAULT.workers)
 
     return Loop(bench, request.budget, decide, proposed)
+
+
+def _run(loop: Loop, request: DiscoverRequest, listener: Listener) -> Findings:
+    """The loop's answer; where it is cut short, as by Ctrl-C, what says where its recordings are."""
+    try:
+        return loop.run()
+    except BaseException:
+        if recorded(session_folder(request.paths[0]), loop.bench.folder):
+            listener.say(
+                f"{loop.bench.folder}: what the bench has recorded, with the session; the same command moves it beside "
+                "the result, a session of its own, and measures anew"
+            )
+        raise
 
 
 def _with_films(session: Session, listener: Listener) -> tuple[Session, tuple[str, ...]]:

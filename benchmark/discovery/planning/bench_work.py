@@ -189,13 +189,18 @@ def kept_experiments(session: Path, folder: Path) -> Path | None:
     """Move an earlier copy in which a bench recorded something out of the way; its new place, None where there is none.
 
     It is what an interrupted loop leaves: a session of its own, beside the hidden folder in which it grew. Files are
-    told by what is in them: a recording may have the name of another one.
+    told by what is in them (`recorded`): a recording may have the name of another one.
     """
-    if not folder.is_dir() or _contents(folder) <= _contents(session):
+    if not folder.is_dir() or not recorded(session, folder):
         return None
     name = folder.parent.name.removeprefix(".").removesuffix(".unfinished")
     places = (folder.parent.with_name(f"{name}-experiments-{number}") for number in itertools.count(1))
     return folder.rename(next(place for place in places if not place.exists()))
+
+
+def recorded(session: Path, folder: Path) -> bool:
+    """Whether a copy of a session holds what the session does not."""
+    return not _contents(folder) <= _contents(session)
 
 
 def _contents(folder: Path) -> set[bytes]:

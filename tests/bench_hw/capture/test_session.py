@@ -321,6 +321,18 @@ def test_a_folder_with_trials_of_no_session_is_to_be_left_alone(record, session)
         record()
 
 
+def test_what_a_killed_first_trial_left_is_told_with_how_to_get_at_it(record, session):
+    record()
+    (session / "session.toml").unlink()
+    (session / "trial_001.mcap").rename(session / "trial_001.mcap.part")
+    said = (
+        r"trial_001\.mcap\.part was cut off; python -m bench_hw recover .*part --out .*trial_001_recovered\.mcap writes"
+    )
+    for append in (True, False):
+        with pytest.raises(InputError, match=said):
+            record(append=append)
+
+
 @pytest.mark.parametrize(
     ("rig", "says"),
     [

@@ -242,8 +242,31 @@ def test_a_discovery_whose_bench_fails_has_the_error_and_keeps_what_an_earlier_o
     request = DiscoverRequest([folder / "session"], out=folder / "found", bench=folder / "rig.toml")
     heard = Heard()
     told = answer_session(request, (), heard)
+    assert not any("the same command moves it" in line for line in heard.lines)  # nothing was recorded
     assert isinstance(told.stopped, DeviceError)
     assert "--bench: the actuator is gone: the answer is that of the trials before" in told.found.warnings
     assert (kept / "experiment_1_1.mcap").read_bytes() == b"measured"
     assert any(line.startswith(str(kept)) for line in heard.lines)
     assert not (told.grown / "experiment_1_1.mcap").exists()
+
+
+def test_an_interrupted_loop_says_where_its_recordings_are(folder, proposal, record, monkeypatch) -> None:
+    answers = [SimpleNamespace(discovery=record.found, chosen=None, known=(), calibrated=None)]
+
+    def decided(*_):
+        if not answers:
+            raise KeyboardInterrupt
+        return answers.pop()
+
+    monkeypatch.setattr(discovery_request, "_found", decided)
+    monkeypatch.setattr(discovery_request, "propose", lambda *_: proposal(menu(USUAL)[-1]))
+    monkeypatch.setattr(discovery_request, "fem_or_wave_table", lambda *_: None)
+    monkeypatch.setattr(bench_loop, "rivals", lambda found: _pair(1e-3))
+    monkeypatch.setattr(bench_loop, "leads", lambda found, standing: {})
+    heard = Heard()
+    request = DiscoverRequest([folder / "session"], out=folder / "found", bench=folder / "rig.toml")
+    with pytest.raises(KeyboardInterrupt):
+        answer_session(request, (), heard)
+    grown = folder / ".found-wave.unfinished" / "session"
+    assert list(grown.glob("experiment_1_*.mcap"))
+    assert any(line.startswith(f"{grown}: what the bench has recorded") for line in heard.lines)
