@@ -57,7 +57,16 @@ from benchmark.discovery.evidence.gains import conditions, tissue_gain
 from benchmark.discovery.evidence.parameter_evidence import at_bounds, constant, undetermined, unsteady
 from benchmark.discovery.evidence.pool import Listener, Pool, code_version, fingerprint, own_code, pool, silent
 from benchmark.discovery.evidence.selection import Selection, first_gain, ruled_out, select, unchosen, usable
-from benchmark.discovery.evidence.shortlist import compared, not_shown, on_all, on_some, promising, remark, screen
+from benchmark.discovery.evidence.shortlist import (
+    compared,
+    not_shown,
+    on_all,
+    on_some,
+    promising,
+    remark,
+    screen,
+    unseen,
+)
 from benchmark.discovery.evidence.told_setup import on_told, setup_first, stands, taken_up
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.files import Session
@@ -369,6 +378,7 @@ def _facts(answer: _Answer, known: Sequence[Effect], settings: Settings) -> Fact
         p_shared=shared_by_chance(answer.chosen, settings),
         by_speed=late_by_speed(problem, answer.chosen.nuisance[:, OWN.index("shift")]) is not None,
         parted=gains_between(problem, answer.chosen.nuisance[:, OWN.index("gain")]) is not None,
+        unseen=unseen(problem.study, known),
     )
 
 

@@ -9,6 +9,9 @@ from benchmark.discovery import criteria
 from benchmark.physics import Effect
 from benchmark.physics.setup_entry import effect_name, setup_key
 
+NOTHING = ("cannot_tell", "no_discrepancy")
+"""Verdicts by which no disagreement is answered."""
+
 
 @dataclass(frozen=True)
 class Facts:
@@ -63,6 +66,8 @@ class Facts:
         Whether the trials' time shifts go with their speeds, as no clock's do: something may hide in them.
     parted : bool
         Whether the trials' gains part conditions, as no scatter of trials does.
+    unseen : tuple of str
+        Effects that were not looked for, since the trials' motion cannot show them; another one would.
     """
 
     p: float
@@ -89,6 +94,7 @@ class Facts:
     p_shared: float = 1.0
     by_speed: bool = False
     parted: bool = False
+    unseen: tuple[str, ...] = ()
 
     @property
     def by_rows(self) -> bool:
@@ -172,7 +178,7 @@ def _mixed(effects: Sequence[Effect]) -> bool:
 
 
 def statement(word: str, facts: Facts) -> str:
-    """The answer in one sentence."""
+    """The answer in one sentence, and in another what was not looked for where trials disagree with the model."""
     names = " and ".join(effect_name(effect.slug) for effect in facts.effects)
     lacks = _lacks(facts.effects)
     alike = ", ".join(effect_name(effect.slug) for effect in facts.lookalikes)
@@ -188,7 +194,9 @@ def statement(word: str, facts: Facts) -> str:
         "instrument_first": f"{lacks}, but these data cannot tell set-up, rig or sensor from tissue here "
         f"(in question: {alike}): a calibration measurement comes first.",
     }
-    return sentences[word]
+    hidden = facts.unseen if word not in NOTHING else ()
+    beside = f" Not looked for, as these trials cannot show it: {', '.join(map(effect_name, hidden))}."
+    return sentences[word] + (beside if hidden else "")
 
 
 def _lacks(effects: Sequence[Effect]) -> str:

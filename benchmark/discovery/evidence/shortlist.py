@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +19,8 @@ from benchmark.physics import Effect
 from benchmark.physics.description import SIGNS, Sign
 
 MARKERS = "markers on the lower face"
+MOTION: frozenset[Sign] = frozenset({"unloading", "hold", "second_rate", "lift_off"})
+"""Signs that another motion brings; a second layer or a clamp it does not."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,6 +126,17 @@ def missing(study: Study, effect: Effect) -> tuple[str, ...]:
 def not_shown(study: Study, effects: Sequence[Effect]) -> dict[str, str]:
     """Effects that a session cannot show, and what it lacks, in words."""
     return {effect.slug: " and ".join(words) for effect in effects if (words := missing(study, effect))}
+
+
+def unseen(study: Study, effects: Sequence[Effect], more: AbstractSet[Sign] = frozenset()) -> tuple[str, ...]:
+    """Slugs of effects that another motion would show, but neither these trials nor some with `more` signs do."""
+    have = shown(study)
+    able = [each for each in effects if study.layout is not None or not each.needs_markers]
+    return tuple(each.slug for each in able if not _has(have | more, each) and _has(have | MOTION, each))
+
+
+def _has(signs: AbstractSet[Sign], effect: Effect) -> bool:
+    return all(not signs.isdisjoint(each) for each in effect.description.needs)
 
 
 def _rows(condition: ConditionData, *phases: str) -> np.ndarray:

@@ -91,18 +91,7 @@ class Loop:
             found = without_ruled_out(found, lost) if lost else found
         else:
             self.bench.add(proposal, self.bench.record(proposal, proposal.trials, number))
-            two = tuple(sorted(nearest(standing), key=lambda rival: rival.slugs))  # one pair, whichever is first now
-            pair = _apart(two)
-            if pair not in self.leads:
-                self.leads[pair] = leads(found, two) or {}
-            self.promised[pair] = math.hypot(self.promised.get(pair, 0.0), proposal.separation)
-            self.measured.append(proposal.choice)
-            found = self.decide(self.bench.folder, self.out)
-            separation, lost = judged_by_trials(found, two, self.measured, self.leads[pair])
-            if self.promised[pair] < criteria.PROMISED:
-                lost = frozenset()
-            if lost:
-                found = self.decide(self.bench.folder, self.out | lost)
+            found, separation, lost = self._decided(found, standing, proposal)
         self.out |= lost
         self.rounds.append(
             Round(
@@ -121,6 +110,30 @@ class Loop:
             )
         )
         return found
+
+    def _decided(
+        self, found: Findings, standing: tuple[Rival, ...], proposal: NextExperiment
+    ) -> tuple[Findings, float | None, frozenset[str]]:
+        """The answer with the new trials, how far apart they set the rivals, and what they rule out.
+
+        Trials that show what was not looked for before rule nothing out: it was no rival.
+        """
+        if proposal.opens:
+            self.measured.append(proposal.choice)
+            return self.decide(self.bench.folder, self.out), None, frozenset()
+        two = tuple(sorted(nearest(standing), key=lambda rival: rival.slugs))  # one pair, whichever is first now
+        pair = _apart(two)
+        if pair not in self.leads:
+            self.leads[pair] = leads(found, two) or {}
+        self.promised[pair] = math.hypot(self.promised.get(pair, 0.0), proposal.separation)
+        self.measured.append(proposal.choice)
+        found = self.decide(self.bench.folder, self.out)
+        separation, lost = judged_by_trials(found, two, self.measured, self.leads[pair])
+        if self.promised[pair] < criteria.PROMISED:
+            lost = frozenset()
+        if lost:
+            found = self.decide(self.bench.folder, self.out | lost)
+        return found, separation, lost
 
 
 def judged_by_block(standing: Sequence[Rival], trial: Path) -> tuple[float, frozenset[str]]:

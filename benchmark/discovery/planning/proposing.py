@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
 from typing import TypeAlias
@@ -13,7 +13,9 @@ import numpy as np
 from bench_hw.motion.protocol_file import MOST_FORCE
 from benchmark.child_processes import mapping
 from benchmark.discovery import criteria
+from benchmark.discovery.answer.verdict import NOTHING
 from benchmark.discovery.discovery_result import PHASES
+from benchmark.discovery.evidence.shortlist import unseen
 from benchmark.discovery.planning.rivals import Rival, expected, nearest, rivals, separation, under
 from benchmark.discovery.report.discovery_record import NextExperiment
 from benchmark.discovery.trials.study import ConditionData
@@ -33,6 +35,7 @@ from benchmark.experiments.menu import (
     second_tools,
 )
 from benchmark.files import Setup
+from benchmark.physics.description import Sign
 from benchmark.response.elastic_table import ElasticTable, TableOf
 
 ROWS = 400
@@ -87,6 +90,9 @@ def propose(
 ) -> NextExperiment | None:
     """Return the experiment that separates the answer from its nearest look-alike; None where there is none.
 
+    Where trials disagree with the model and something was not looked for that another motion shows, that motion comes
+    first (`opening`): among causes of which the true one may be missing there is nothing to choose.
+
     Entries that a model cannot follow are left out of the menu, and so are those that tell no more than as many trials
     of the session's own press would. They are weighed by as many trials as a condition of the session has, but by no
     more than a test of trials needs: the rivals may be told apart by one. Of those that promise to decide the one that
@@ -105,12 +111,13 @@ def propose(
         Processes that work out the elastic answers under other tools; with more than one, `table_of` can be pickled.
     """
     standing = rivals(found)
-    if len(standing) < 2:
-        return None
-    first, second = nearest(standing)
     conditions = found.calibrated.base.model.problem.study.conditions
     allowed = replace(allowed, done=allowed.done | _there(conditions))
     condition = _own_condition(conditions, allowed.done)
+    shows = opening(found, standing, condition, allowed)
+    if shows is not None or len(standing) < 2:
+        return shows
+    first, second = nearest(standing)
     seen = _with_this_tool(first, second, condition, allowed)
     if table_of is not None:
         seen |= _tools(first, second, condition, table_of, allowed, workers)
@@ -135,6 +142,49 @@ def propose(
         menu={each.experiment.name: (each.separation(few), each.minutes(few)) for each in weighed},
         toml=protocol_toml(best.experiment),
         trials=best.trials,
+    )
+
+
+BRINGS: Mapping[str, frozenset[Sign]] = {
+    "longer hold": frozenset({"hold"}),
+    "slower": frozenset({"second_rate"}),
+    "faster": frozenset({"second_rate"}),
+}
+"""Signs that entries of the menu have beside `RETURN`, which each of them has."""
+RETURN: frozenset[Sign] = frozenset({"unloading", "lift_off"})
+
+
+def opening(
+    found: Findings, standing: Sequence[Rival], condition: ConditionData, allowed: Allowed
+) -> NextExperiment | None:
+    """The experiment that shows most of what was not looked for; None where trials agree, or where none shows any.
+
+    Of several the first of the menu, a hold: a memory shows in it at all its times.
+    """
+    study = found.calibrated.base.model.problem.study
+    hidden = () if found.discovery.verdict in NOTHING else unseen(study, found.known)
+    best: tuple[Experiment, tuple[str, ...]] | None = None
+    for experiment in menu(usual_press(condition)) if hidden else ():
+        left = unseen(study, found.known, RETURN | BRINGS.get(experiment.name, frozenset()))
+        shows = tuple(slug for slug in hidden if slug not in left)
+        if experiment.name in allowed.done or len(shows) <= (0 if best is None else len(best[1])):
+            continue
+        if _simulated(standing[0], standing[-1], condition, experiment, allowed.most_force) is not None:
+            best = experiment, shows
+    if best is None:
+        return None
+    (experiment, shows), trials = best, min(condition.size, criteria.ENOUGH_TRIALS)
+    return NextExperiment(
+        rivals=("+".join(standing[0].slugs) or "none", "+".join(shows)),
+        choice=experiment.name,
+        words=experiment.words,
+        separation_now=math.nan,
+        separation=math.nan,
+        minutes=minutes(experiment, trials),
+        menu={},
+        toml=protocol_toml(experiment),
+        trials=trials,
+        opens=shows,
     )
 
 

@@ -71,6 +71,9 @@ class NextExperiment:
         The protocol file.
     trials : int
         That are expected to decide.
+    opens : tuple of str
+        Slugs that were not looked for and that it shows. Then nothing is weighed: the second of `rivals` is they,
+        the separations are NaN and the menu is empty.
     """
 
     rivals: tuple[str, str]
@@ -82,6 +85,7 @@ class NextExperiment:
     menu: Mapping[str, tuple[float, float]]
     toml: str
     trials: int = 1
+    opens: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -95,7 +99,7 @@ class Round:
         Entry of the menu, and what was done.
     separation_now, expected, found : float
         Standard deviations between the rivals by the trials before, as expected of the experiment, and as it turned out
-        (None where a rival was not fitted again).
+        (None where a rival was not fitted again; the others are NaN where it showed what was not looked for before).
     trials : int
     minutes : float
         At the bench.

@@ -185,6 +185,10 @@ def next_section(record: DiscoveryRecord) -> Section:
     proposal = record.proposal
     if proposal is None:
         return Section("What to measure next", [Paragraph(record.labels.get("next", ADVICE[record.found.verdict]))])
+    listing = Listing(proposal.toml, "next_experiment.toml, for python -m bench_hw capture")
+    if proposal.opens:
+        text = f"{proposal.words} {shown_by(proposal)}"
+        return Section("What to measure next", [Paragraph(text), listing])
     first, second = map(effect_name, proposal.rivals)
     text = (
         f"{proposal.words} Expected distance of {first} and {second}: "
@@ -192,8 +196,15 @@ def next_section(record: DiscoveryRecord) -> Section:
         f"{proposal.minutes:.0f} minutes at the bench; the session tells "
         f"{proposal.separation_now:.1f}.{_apart(proposal)}"
     )
-    listing = Listing(proposal.toml, "next_experiment.toml, for python -m bench_hw capture")
     return Section("What to measure next", [Paragraph(text), _menu(proposal), listing])
+
+
+def shown_by(proposal: NextExperiment) -> str:
+    """What a proposed experiment shows that was not looked for, and what it takes."""
+    return (
+        f"It shows what these trials cannot, and was not looked for: {', '.join(map(effect_name, proposal.opens))}; "
+        f"{trials_in_words(proposal.trials)}, {proposal.minutes:.0f} min at the bench."
+    )
 
 
 def trials_in_words(count: int) -> str:
@@ -231,11 +242,7 @@ def loop_section(record: DiscoveryRecord) -> Section:
         none = f"The loop ended before its time: {record.stopped}. What was recorded is in the folder session."
     if not record.rounds:
         return Section(title, [Paragraph(none)])
-    told = [
-        f"{each.words} {_begun(effect_name(each.rivals[0]))} against {effect_name(each.rivals[1])}: "
-        f"{_parted(each.found)} apart, {each.expected:.0f} expected. {_outcome(each)}"
-        for each in record.rounds
-    ]
+    told = [f"{each.words} {_compared(each)} {_outcome(each)}" for each in record.rounds]
     columns = (
         "round", "experiment", "rivals", Column("before", "sd", 3), Column("expected", "sd", 3),
         Column("found", "sd", 3), "trials", Column("bench time", "min", 3), "ruled out",
@@ -257,6 +264,13 @@ def loop_section(record: DiscoveryRecord) -> Section:
     caption = "Rounds: separation of the rivals in standard deviations before, expected of the experiment, and found"
     ended = [] if record.stopped is None else [Paragraph(none)]
     return Section(title, [*ended, Bullets(told), Table(caption, columns, rows, folded=False)])
+
+
+def _compared(each: Round) -> str:
+    if math.isnan(each.expected):
+        return f"Shown, and not looked for before: {effect_name(each.rivals[1])}."
+    first, second = map(effect_name, each.rivals)
+    return f"{_begun(first)} against {second}: {_parted(each.found)} apart, {each.expected:.0f} expected."
 
 
 def _parted(found: float | None) -> str:

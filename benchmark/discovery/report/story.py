@@ -7,7 +7,7 @@ import numpy as np
 from benchmark.discovery.discovery_result import Candidate, ChannelGap, Place, Trace, channel_unit
 from benchmark.discovery.report.disagreement_sections import representative, traced
 from benchmark.discovery.report.discovery_record import DiscoveryRecord
-from benchmark.discovery.report.effect_sections import ADVICE, OF_A_RUN, trials_in_words
+from benchmark.discovery.report.effect_sections import ADVICE, OF_A_RUN, shown_by, trials_in_words
 from benchmark.discovery.report.words import (
     added_words,
     channel_name,
@@ -23,6 +23,7 @@ from reports import Story, StoryStep
 from reports.figures import repaired
 from reports.formatting import format_number
 
+PROTOCOL = "The protocol: next_experiment.toml."
 WIDTH = 500.0
 """Of the picture, px: narrower than other pictures, since it must be read on a telephone too."""
 
@@ -178,9 +179,11 @@ def _next(record: DiscoveryRecord) -> StoryStep:
     if proposal is None:
         return StoryStep("What to measure next", record.labels.get("next", ADVICE[record.found.verdict]))
     first, second = map(effect_name, proposal.rivals)
+    if proposal.opens:
+        return StoryStep("What to measure next", proposal.words, f"{shown_by(proposal)} {PROTOCOL}")
     detail = (
         f"Expected to set {first} and {second} {proposal.separation:.0f} standard deviations apart, now "
         f"{proposal.separation_now:.0f}; {trials_in_words(proposal.trials)}, {proposal.minutes:.0f} min at the bench. "
-        "The protocol: next_experiment.toml."
+        f"{PROTOCOL}"
     )
     return StoryStep("What to measure next", proposal.words, detail)

@@ -49,6 +49,15 @@ def test_each_verdict_has_its_facts(word):
     assert statement(word, made).endswith(".")
 
 
+@pytest.mark.parametrize("word", VERDICTS)
+def test_what_was_not_looked_for_stands_in_the_headline_where_trials_disagree(word):
+    hidden = facts(**CASES[word], unseen=("viscoelastic_relaxation", "poroelastic_drainage"))
+    said = "Not looked for, as these trials cannot show it: viscoelastic relaxation, poroelastic drainage."
+    assert verdict(hidden) == word
+    assert statement(word, hidden).endswith(said) == (word not in ("no_discrepancy", "cannot_tell"))
+    assert "Not looked for" not in statement(word, facts(**CASES[word]))
+
+
 def test_a_disagreement_without_an_effect_is_outside_the_catalogue():
     assert verdict(facts(effects=())) == "outside_catalogue"
 

@@ -20,6 +20,7 @@ from benchmark.discovery.evidence.shortlist import (
     promising,
     remark,
     shown,
+    unseen,
 )
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.physics import catalogue
@@ -119,6 +120,15 @@ def test_loading_alone_shows_stiffening_and_a_floor_but_nothing_of_rate_memory_o
     assert lacking["dry_friction"] == "unloading"
     assert lacking["viscoelastic_relaxation"] == "a hold or a second rate"
     assert lacking["interface_slip"] == "a second layer or a clamp and unloading"
+
+
+def test_what_another_motion_would_show_is_what_lacks_no_layer_and_no_marker():
+    to_and_fro = study(condition(LOADING, *BACK, AIR))
+    memory = ("viscoelastic_relaxation", "poroelastic_drainage")
+    assert unseen(to_and_fro, catalogue()) == memory
+    assert unseen(to_and_fro, catalogue(), {"hold"}) == ()
+    assert set(unseen(study(condition(LOADING)), catalogue(), {"unloading", "lift_off"})) == set(memory)
+    assert unseen(study(condition(LOADING, HOLD, *BACK, AIR)), catalogue()) == ()
 
 
 def test_slip_needs_something_to_slide_on():

@@ -121,6 +121,20 @@ def test_what_promised_little_rules_nobody_out_until_more_adds_up(bench, proposa
     assert more.out == {"b"}  # five times 4.5 are 10.1
 
 
+def test_trials_that_show_what_was_not_looked_for_rule_nothing_out(bench, proposal, monkeypatch) -> None:
+    """Though one name stands, and is judged with them later."""
+    found = SimpleNamespace(discovery=SimpleNamespace(verdict="named", effects=()))
+    monkeypatch.setattr(bench_loop, "rivals", lambda found: (Rival(("a",), None),))
+    monkeypatch.setattr(BenchWork, "record", lambda bench, proposal, trials, number: ())
+    added = []
+    monkeypatch.setattr(BenchWork, "add", lambda bench, proposal, files: added.append(proposal.choice))
+    shows = replace(proposal(menu(USUAL)[0]), separation=np.nan, separation_now=np.nan, opens=("c",))
+    loop = Loop(bench, 1, lambda path, without: found, lambda found, allowed: shows)
+    loop.run()
+    assert (added, loop.measured, loop.promised) == (["longer hold"], ["longer hold"], {})
+    assert (loop.out, loop.rounds[0].found, loop.rounds[0].ruled_out) == (frozenset(), None, ())
+
+
 def test_what_a_pair_said_before_stays_when_the_other_comes_first(bench, proposal, monkeypatch) -> None:
     found = SimpleNamespace(discovery=SimpleNamespace(verdict="lookalikes", effects=()))
     first, second = (Rival((slug,), None) for slug in "ab")

@@ -16,7 +16,7 @@ from benchmark.discovery.planning.proposing import (
     usual_press,
 )
 from benchmark.experiments.menu import menu, minutes, protocol_toml, rigid_block, same_again
-from benchmark.physics import TrialContext
+from benchmark.physics import Effect, TrialContext, catalogue
 
 
 def _condition(kind: str) -> SimpleNamespace:
@@ -30,6 +30,16 @@ def _condition(kind: str) -> SimpleNamespace:
         time=np.tile(time, (3, 1)), depth=np.tile(depth, (3, 1)), phase=phase, cycle=np.ones(101, dtype=int),
         around=around, support=SimpleNamespace(kind=kind),
     )  # fmt: skip
+
+
+def _found(study: SimpleNamespace, verdict: str = "lookalikes", known: tuple[Effect, ...] = ()) -> SimpleNamespace:
+    study.layout = None
+    for condition in study.conditions:
+        if not hasattr(condition, "phase"):
+            condition.__dict__.update({**vars(_condition("bonded")), **vars(condition)})
+    base = SimpleNamespace(model=SimpleNamespace(problem=SimpleNamespace(study=study)))
+    found = SimpleNamespace(verdict=verdict)
+    return SimpleNamespace(calibrated=SimpleNamespace(base=base), discovery=found, known=known)
 
 
 def _rival(*slugs: str, **values: dict[str, float]) -> SimpleNamespace:
@@ -69,8 +79,7 @@ def test_many_trials_of_a_session_are_not_asked_for_again(monkeypatch, there, al
     monkeypatch.setattr(proposing, "rivals", lambda found: (_rival("a"), _rival("b")))
     monkeypatch.setattr(proposing, "_with_this_tool", lambda *_: dict(seen))
     study = SimpleNamespace(conditions=[SimpleNamespace(size=there, name="slow", around=_condition("hole").around)])
-    base = SimpleNamespace(model=SimpleNamespace(problem=SimpleNamespace(study=study)))
-    found = propose(SimpleNamespace(calibrated=SimpleNamespace(base=base)))
+    found = propose(_found(study))
     if trials is None:
         assert found is None
         return
@@ -102,8 +111,7 @@ def test_what_decides_goes_before_what_is_quick(monkeypatch, sizes, chosen, tria
     monkeypatch.setattr(proposing, "_with_this_tool", lambda *_: {"same again": (same_again(usual), 1.0), **menus})
     monkeypatch.setattr(proposing, "_calibrations", lambda *_: block)
     study = SimpleNamespace(conditions=[SimpleNamespace(size=10, name="slow")])
-    base = SimpleNamespace(model=SimpleNamespace(problem=SimpleNamespace(study=study)))
-    session = SimpleNamespace(calibrated=SimpleNamespace(base=base))
+    session = _found(study)
     found = propose(session)
     assert (found.choice, found.trials) == (chosen, trials)
     other = "machine_compliance" if chosen == "rigid block" else "a"  # the nearest rival with an effect
@@ -137,10 +145,53 @@ def test_what_a_session_has_of_the_menu_is_not_proposed_again(monkeypatch) -> No
         SimpleNamespace(size=size, name=name, around=_condition("hole").around) for name, size in sizes.items()
     ]
     study = SimpleNamespace(conditions=conditions)
-    base = SimpleNamespace(model=SimpleNamespace(problem=SimpleNamespace(study=study)))
-    found = propose(SimpleNamespace(calibrated=SimpleNamespace(base=base)))
+    found = propose(_found(study))
     assert seen_from == ["press"]
     assert found.choice == "slower"
+
+
+MEMORY = ("viscoelastic_relaxation", "poroelastic_drainage")
+
+
+def _unheld() -> SimpleNamespace:
+    """A press to and fro without a hold, at one speed, and the air after it."""
+    time = np.linspace(0.0, 10.0, 101)
+    depth = np.interp(time, [0.0, 4.0, 8.0, 10.0], [0.0, 2e-3, 0.0, -1e-3])
+    stages = ("load", "unload_high", "after_lift_off")
+    phase = np.select([time < 4.0, time < 8.0], [PHASES.index(name) for name in stages[:2]], PHASES.index(stages[2]))
+    around = TrialContext(5e-3, 4e-3, 2e-3, 3.0, 10.0)
+    return SimpleNamespace(
+        time=np.tile(time, (3, 1)), depth=np.tile(depth, (3, 1)), phase=phase, cycle=np.ones(101, dtype=int),
+        around=around, support=SimpleNamespace(kind="bonded"), size=3, name="press",
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("standing", [("dry_friction",), ("dry_friction", "permanent_set")])
+@pytest.mark.parametrize("verdict", ["named", "lookalikes", "outside_catalogue"])
+def test_what_was_not_looked_for_is_shown_before_rivals_are_separated(monkeypatch, standing, verdict) -> None:
+    """Of a relaxing sheet pressed without a hold dry friction was named, and experiments were spent on its rivals."""
+    monkeypatch.setattr(proposing, "rivals", lambda found: tuple(map(_rival, standing)))
+    monkeypatch.setattr(proposing, "_simulated", lambda *_: 0.0)
+    found = propose(_found(SimpleNamespace(conditions=(_unheld(),)), verdict, catalogue()))
+    assert (found.choice, found.trials, found.opens) == ("longer hold", 3, MEMORY)
+    assert found.rivals == ("dry_friction", "+".join(MEMORY))
+    assert "hold for 60 s" in found.words
+    assert '"hold"' in found.toml
+    assert (found.menu, np.isnan([found.separation, found.separation_now]).all()) == ({}, True)
+    again = propose(
+        _found(SimpleNamespace(conditions=(_unheld(),)), verdict, catalogue()), allowed=Allowed(done={"longer hold"})
+    )
+    assert (again.choice, again.opens) == ("slower", MEMORY)
+
+
+def test_where_trials_agree_or_a_bench_cannot_nothing_is_shown(monkeypatch) -> None:
+    monkeypatch.setattr(proposing, "rivals", lambda found: (_rival(),))
+    monkeypatch.setattr(proposing, "_simulated", lambda *_: 0.0)
+    for verdict in ("no_discrepancy", "cannot_tell"):
+        assert propose(_found(SimpleNamespace(conditions=(_unheld(),)), verdict, catalogue())) is None
+    assert propose(_found(SimpleNamespace(conditions=(_unheld(),)), "named")) is None  # all were looked for
+    monkeypatch.setattr(proposing, "_simulated", lambda *_: None)  # too much force
+    assert propose(_found(SimpleNamespace(conditions=(_unheld(),)), "named", catalogue())) is None
 
 
 def test_a_rigid_block_is_for_a_rig_that_gives_way() -> None:

@@ -135,6 +135,22 @@ def test_the_proposal_stands_with_its_protocol(record) -> None:
         assert words in text
 
 
+def test_what_an_experiment_shows_that_was_not_looked_for_is_told_without_a_separation(record, tmp_path) -> None:
+    hidden = "viscoelastic_relaxation+poroelastic_drainage"
+    rivals, none = ("dry_friction", hidden), float("nan")
+    shows = NextExperiment(
+        rivals, "longer hold", "Hold for 60 s.", none, none, 4.9, {}, "[[segments]]\n", 3, tuple(hidden.split("+"))
+    )
+    text = _text(replace(record, proposal=shows))
+    assert text.count("was not looked for: viscoelastic relaxation, poroelastic drainage; 3 trials, 5 min") == 2
+    held = Round(
+        rivals, "longer hold", "Hold for 60 s.", none, none, None, 3, 4.9, (), "named", ("viscoelastic_relaxation",), 1
+    )
+    told = _text(replace(record, proposal=None, grown=tmp_path, rounds=(held,)))
+    assert "Hold for 60 s. Shown, and not looked for before: viscoelastic relaxation+poroelastic drainage." in told
+    assert not re.search(r"\bnan\b", f"{text} {told}")
+
+
 def test_each_round_at_the_bench_is_told_and_stands_in_a_table(record, tmp_path) -> None:
     first = Round(
         rivals=("viscoelastic_relaxation", "poroelastic_drainage"),
