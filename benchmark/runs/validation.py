@@ -120,11 +120,11 @@ def _measured(record: RunRecord, measured: MeasuredComparison, levels: tuple[Lev
 
 
 def condition_columns(record: RunRecord) -> Columns | None:
-    """Columns of `validation_conditions.csv`: one row a protocol, model and condition; None with one condition."""
+    """Columns of `validation_conditions.csv`: one row a protocol, model and condition; None without trials."""
     measured, rows = record.measured, []
-    names = [] if measured is None else list(dict.fromkeys(trial.condition for trial in measured.trials))
-    if measured is None or len(names) < 2:
+    if measured is None:
         return None
+    names = list(dict.fromkeys(trial.condition for trial in measured.trials))
     for protocol, run, data, model in _peaks(record, measured):
         for name in names:
             at = [k for k, trial in enumerate(measured.trials) if trial.condition == name]
@@ -134,19 +134,47 @@ def condition_columns(record: RunRecord) -> Columns | None:
     return {column: [row[place] for row in rows] for place, column in enumerate(BY_CONDITION)}
 
 
-def furthest_off(columns: Mapping[str, Sequence[Any]], least: float) -> tuple[str, float, float] | None:
-    """The condition that speaks most against the finite elements: its name, E over D, and |E| over u_val.
+Miss = tuple[str, float, float | None]
+"""Whose peak force is missed, E over D, and |E| over u_val; None where no replicate tells u_D."""
+ALL = "all trials"
 
-    Of `condition_columns`, by the stiffness fitted to all trials or to the others: off by more than two u_val, and by a
-    share `least` of D; None where none is.
+
+def furthest_off(
+    conditions: Mapping[str, Sequence[Any]], least: float, whole: Mapping[str, Sequence[Any]] | None = None
+) -> Miss | None:
+    """What speaks most against the finite elements: a condition, or all trials, whatever conditions are called.
+
+    Of `condition_columns` and, in `whole`, `validation_columns`, by the stiffness fitted to all trials or to the
+    others: off by a share `least` of D and by more than two u_val, or by that share without an u_D; None where none is.
     """
-    rows = zip(*(columns[name] for name in ("condition", "simulation", "D_N", "E_N", "u_D_N", "u_val_N")), strict=True)
     found = [
-        (str(name), float(error) / float(data), abs(float(error)) / float(uncertainty))
-        for name, model, data, error, scatter, uncertainty in rows
-        if model == "fem" and scatter not in (None, "") and abs(float(error)) > 2.0 * float(uncertainty) > 0.0
+        (name, error / data, abs(error) / uncertainty if uncertainty else None)
+        for name, data, error, uncertainty in _judged(conditions, whole)
+        if abs(error) > max(least * abs(data), 2.0 * (uncertainty or 0.0))
     ]
-    return max((one for one in found if abs(one[1]) > least), key=lambda one: one[2], default=None)
+    return max(found, key=lambda one: one[2] or 0.0, default=None)
+
+
+def _judged(
+    conditions: Mapping[str, Sequence[Any]], whole: Mapping[str, Sequence[Any]] | None
+) -> Iterator[tuple[str, float, float, float | None]]:
+    """Name, D, E and u_val (None without u_D) of the finite elements, by protocol, of each condition and of all."""
+    names = ("protocol", "simulation", "condition", "trials", "D_N", "E_N", "u_D_N", "u_val_N")
+    rows = [row for row in zip(*(conditions[name] for name in names), strict=True) if row[1] == "fem"]
+    for protocol in dict.fromkeys(row[0] for row in rows):
+        own = [row for row in rows if row[0] == protocol]
+        for _, _, name, _, data, error, scatter, uncertainty in own:
+            yield str(name), float(data), float(error), _known(scatter, uncertainty)
+        if whole is not None and len(own) > 1:
+            cells = zip(*(whole[name] for name in ("protocol", "simulation", "measure", "value")), strict=True)
+            told = {measure: value for *key, measure, value in cells if key == [protocol, "fem"]}
+            mean = sum(row[3] * row[4] for row in own) / sum(row[3] for row in own)
+            yield ALL, mean, float(told["E"]), _known(told["u_D"], told["u_val"])
+
+
+def _known(scatter: Any, uncertainty: Any) -> float | None:
+    """u_val as it is in a table; None without u_D."""
+    return None if scatter in (None, "") or uncertainty in (None, "") else float(uncertainty)
 
 
 def _peaks(record: RunRecord, measured: MeasuredComparison) -> Iterator[tuple[str, ModelRun, Array, Array]]:
@@ -170,7 +198,10 @@ def _check(
     stiffness, force = measured.fit.stiffness, float(model[at].mean())
     freedom = stiffness.trials - 1 if stiffness.log_std is not None and stiffness.trials > 1 else None
     inputs = input_uncertainty(force / stiffness.value, (stiffness.ci95_low, stiffness.ci95_high), freedom)
-    scatter = replicate_uncertainty((data - model)[at].tolist(), [measured.trials[k].condition for k in at])
+    names, apart = np.array([trial.condition for trial in measured.trials]), data - model
+    scatter = replicate_uncertainty(apart[at].tolist(), names[at].tolist())
+    if scatter is None and (whole := replicate_uncertainty(apart.tolist(), names.tolist())) is not None:
+        scatter = whole * math.sqrt(apart.size / len(at))  # a single trial of a condition scatters as the others do
     numerical = _relative_numerical(run, levels)
     return Validation(force, float(data[at].mean()), None if numerical is None else numerical * force, inputs, scatter)
 

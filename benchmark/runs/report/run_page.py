@@ -41,7 +41,7 @@ def run_verdict(
         return Verdict("incomplete", "A solver stopped before the end of the load history.", stops)
     if record.pair.fem.result is None or record.pair.wave.result is None:
         return _one_sided(record, fit)
-    return _agreement(record, fit, columns.get(CONDITIONS))
+    return _agreement(record, fit, columns)
 
 
 def _one_sided(record: RunRecord, fit: str | None) -> Verdict:
@@ -55,7 +55,7 @@ def _one_sided(record: RunRecord, fit: str | None) -> Verdict:
     return Verdict("finding", sentence(fit), points)
 
 
-def _agreement(record: RunRecord, fit: str | None, conditions: Columns | None) -> Verdict:
+def _agreement(record: RunRecord, fit: str | None, columns: Mapping[str, Columns]) -> Verdict:
     """Whether equivalence is shown, where both models have values."""
     errors = peak_errors(record)
     wave, fem = record.pair.wave.name, record.pair.fem.name
@@ -70,11 +70,11 @@ def _agreement(record: RunRecord, fit: str | None, conditions: Columns | None) -
     points.extend([result.notes[SMALL_STRAIN]] if result is not None and SMALL_STRAIN in result.notes else [])
     points.extend([] if fit is None else [fit])
     points.extend(one.text for one in record.beside)
-    return _equivalence(record, errors, points, conditions)
+    return _equivalence(record, errors, points, columns)
 
 
 def _equivalence(
-    record: RunRecord, errors: Mapping[str, float], points: Sequence[str], conditions: Columns | None
+    record: RunRecord, errors: Mapping[str, float], points: Sequence[str], columns: Mapping[str, Columns]
 ) -> Verdict:
     """What is equivalent, on average and, by `errors` at peak load and the largest of any step, throughout."""
     share = 100 * record.scenario.comparison.equivalence_margin
@@ -95,11 +95,11 @@ def _equivalence(
         return Verdict("finding", f"Equivalence within {margin} is not shown in {' and '.join(parts)}; {off}.", points)
     what = "every layer's maximum deformation" if record.force_comparison is None else "force and maximum deformations"
     headline = f"{wave} and {record.pair.fem.name} are equivalent within {margin} in {what}"
-    aside = _aside(record, worst, stray, conditions)
+    aside = _aside(record, worst, stray, columns)
     return Verdict("finding" if aside else "good", sentence(f"{headline}{aside}"), points)
 
 
-def _aside(record: RunRecord, worst: float, stray: tuple[str, float], conditions: Columns | None) -> str:
+def _aside(record: RunRecord, worst: float, stray: tuple[str, float], columns: Mapping[str, Columns]) -> str:
     """What speaks against models that are equivalent in the mean; empty where nothing does."""
     share, wave = 100 * record.scenario.comparison.equivalence_margin, record.pair.wave.name
     average, largest = " on average over the load history, but", "of the largest value"
@@ -110,11 +110,18 @@ def _aside(record: RunRecord, worst: float, stray: tuple[str, float], conditions
     shape = max(profile_errors(record).items(), key=lambda item: item[1], default=("", 0.0))
     if shape[1] > PROFILE_SHARES * share:
         return f", but beside the axis the {wave}'s profile is off by up to {shape[1]:.1f} % of its peak ({shape[0]})"
-    off = None if conditions is None else furthest_off(conditions, 0.01 * share)
+    return _beside_trials(columns, 0.01 * share) if CONDITIONS in columns else ""
+
+
+def _beside_trials(columns: Mapping[str, Columns], margin: float) -> str:
+    """What trials say against both models; empty where they do not."""
+    off = furthest_off(columns[CONDITIONS], margin, columns.get(VALIDATION))
     if off is None:
         return ""
-    by = f"{100.0 * off[1]:+.1f} % off, {off[2]:.2g} times its uncertainty"
-    return f", but the trials speak against both: the peak force of {off[0]} is {by}"
+    miss = f"the peak force of {off[0]} is {100.0 * off[1]:+.1f} % off"
+    if off[2] is None:
+        return f", but beside the trials {miss}, and no replicate tells how surely"
+    return f", but the trials speak against both: {miss}, {off[2]:.2g} times its uncertainty"
 
 
 PROFILE_SHARES = 2.0

@@ -15,7 +15,8 @@ from benchmark.runs.report.run_page import run_page, run_verdict
 from benchmark.runs.report.values import peak_errors
 from benchmark.runs.scenario_run import run_scenario
 from benchmark.runs.tables import run_tables
-from benchmark.runs.validation import condition_columns
+from benchmark.runs.validation import condition_columns, validation_columns
+from reports import Verdict
 
 QUICK = {"fem.mesh": "coarse", "load.observations": "20", "wave.large_press": "linear"}
 
@@ -68,17 +69,55 @@ def _measured(forces: dict[str, tuple[float, ...]], factor: float) -> SimpleName
     return SimpleNamespace(trials=trials, fit=SimpleNamespace(stiffness=stiffness))
 
 
+def _verdict_beside(finished: RunRecord, forces: dict[str, tuple[float, ...]], factor: float = 1.0) -> Verdict:
+    """The verdict of models that agree, beside trials."""
+    record = replace(_with_wave(finished, np.full(20, 1.001)), measured=_measured(forces, factor))
+    found = {"validation.csv": validation_columns(record, ()), "validation_conditions.csv": condition_columns(record)}
+    return run_verdict(record, None, found)
+
+
 @pytest.mark.parametrize(
     ("shallow", "deep", "status"),
     [((1.0, 1.01, 0.99), (1.0, 1.0, 1.01), "good"), ((0.9, 0.91, 0.89), (1.1, 1.11, 1.09), "finding")],
 )
 def test_models_that_agree_beside_trials_that_do_not_are_not_called_good(finished, shallow, deep, status) -> None:
     """One stiffness missed a condition by 15 %, six times its uncertainty, and the mean of all by none."""
-    agreeing = _with_wave(finished, np.full(20, 1.001))
-    record = replace(agreeing, measured=_measured({"shallow": shallow, "deep": deep}, 1.0))
-    verdict = run_verdict(record, None, {"validation_conditions.csv": condition_columns(record)})
+    verdict = _verdict_beside(finished, {"shallow": shallow, "deep": deep})
     assert verdict.status == status
     assert ("the trials speak against both: the peak force of " in verdict.headline) == (status != "good")
+
+
+FORCES = (1.0, 1.005, 0.995, 1.002, 0.998)
+
+
+@pytest.mark.parametrize("names", ["aaaaa", "aaabb", "aaaab", "abcde"])
+@pytest.mark.parametrize(("factor", "status"), [(1.0, "good"), (0.875, "finding")])
+def test_what_conditions_are_called_does_not_decide_the_verdict(finished, names, factor, status) -> None:
+    """Models 12.5 % off, 70 times their uncertainty, were good where all trials had one name or each its own."""
+    forces = {name: tuple(f for n, f in zip(names, FORCES, strict=True) if n == name) for name in dict.fromkeys(names)}
+    verdict = _verdict_beside(finished, forces, factor)
+    assert verdict.status == status
+    if status == "finding":
+        assert "% off, and no replicate tells" in verdict.headline or "times its uncertainty" in verdict.headline
+
+
+def test_a_miss_that_only_all_trials_together_show_surely_is_not_called_good(finished) -> None:
+    """Scatter of 8 % hides 10 % in each of four pairs, not in their mean."""
+    forces = dict.fromkeys("abcd", (0.92, 1.08))
+    assert _verdict_beside(finished, forces, 1.0).status == "good"
+    verdict = _verdict_beside(finished, forces, 0.9)
+    assert "the trials speak against both: the peak force of all trials is -10.0 % off" in verdict.headline
+
+
+def test_a_single_trial_of_a_condition_scatters_as_the_others_do(finished) -> None:
+    forces = {"a": (0.95, 1.05, 1.0, 0.95, 1.05), "b": (0.95,)}
+    assert _verdict_beside(finished, forces).status == "good"
+    assert "the peak force of b is " in _verdict_beside(finished, forces | {"b": (0.8,)}).headline
+
+
+def test_a_single_trial_tells_no_uncertainty_to_judge_by(finished) -> None:
+    assert _verdict_beside(finished, {"a": (1.0,)}, 0.99).status == "good"
+    assert "no replicate tells how surely" in _verdict_beside(finished, {"a": (1.0,)}, 0.9).headline
 
 
 def test_maxima_of_models_that_came_to_unlike_loads_are_those_of_the_steps_that_both_reached(finished) -> None:
