@@ -13,9 +13,10 @@ import numpy as np
 from benchmark.child_processes import output_on_stderr
 from benchmark.errors import TissuebenchError
 from benchmark.files import Load, Scenario, Session, Setup, Support, Tissue, Tool, scaled_tissue
+from benchmark.files.tissue import PronyTerm
 from benchmark.identification import TrialData, predict, sheet_force
 from benchmark.identification.effects_in_fit import trial_context
-from benchmark.identification.sheet_model import relaxed
+from benchmark.identification.sheet_model import NONE, Relaxation, relaxed
 from benchmark.identification.sheet_session import held_out_state
 from benchmark.model_file import RepairedModel
 from benchmark.models import NOTHING, Array, Drive, Own, PreparedModel, UncoveredError, prepare
@@ -59,6 +60,7 @@ def run_session(
     session, fit = found.session, found.fit
     scenario, other = session_scenario(found, as_told=own.reference is not None)
     predictions, said = _predictions(found, own)
+    other += _told_otherwise(found, scenario.tissue)
     measured, warnings = MeasuredComparison(session, fit, predictions, found.filmed), (*found.warnings, *said, *other)
     return run_scenario(scenario, options, listener, name=session.name, measured=measured, warnings=warnings, own=own)
 
@@ -66,6 +68,36 @@ def run_session(
 def fitted_tissue(found: FittedSession, told: Tissue) -> Tissue:
     """The tissue of a set-up with the stiffness that was found."""
     return scaled_tissue(told, found.stiffness_factor, f"{told.name}, fitted")
+
+
+def relaxing_tissue(found: FittedSession, told: Tissue) -> Tissue:
+    """The tissue with the stiffness that was found and, in every layer, the relaxation that films told, if any.
+
+    The fit has the force relax as a whole: with one term for the shear of all layers it does, to 0.1 % on the phantom's
+    sheet (Poisson's ratio 0.49). A tissue that relaxes as told stays as it is.
+    """
+    tissue, relaxation = fitted_tissue(found, told), _relaxation(found)
+    if relaxation == NONE or any(layer.relaxation for layer in tissue.layers):
+        return tissue
+    term = PronyTerm(g=relaxation.share, tau=relaxation.tau)
+    layers = tuple(layer.model_copy(update={"relaxation": (term,)}) for layer in tissue.layers)
+    return tissue.model_copy(update={"layers": layers})
+
+
+def _relaxation(found: FittedSession) -> Relaxation:
+    """What films told of the relaxation; none without."""
+    return NONE if found.filmed is None or found.filmed.sheet is None else found.filmed.sheet.relaxation
+
+
+def _told_otherwise(found: FittedSession, tissue: Tissue) -> tuple[str, ...]:
+    """That models beside the trials relax otherwise than side by side, where the specimen's own relaxation stays."""
+    one = _relaxation(found)
+    if one == NONE or all(layer.relaxation == (PronyTerm(g=one.share, tau=one.tau),) for layer in tissue.layers):
+        return ()
+    return (
+        f"the relaxation found in the trials (g = {one.share:.3g}, tau = {one.tau:.3g} s) is in the models beside them "
+        "alone: side by side the specimen relaxes as its file tells",
+    )
 
 
 def session_scenario(found: FittedSession, *, as_told: bool) -> tuple[Scenario, tuple[str, ...]]:
@@ -76,7 +108,7 @@ def session_scenario(found: FittedSession, *, as_told: bool) -> tuple[Scenario, 
     """
     session = found.session
     first, peak = session.setups[0], float(np.median([trial.peak for trial in found.fit.trials]))
-    told, support, tissue = *first[1:], fitted_tissue(found, first[0])
+    told, support, tissue = *first[1:], relaxing_tissue(found, first[0])
     carried = carried_forces(found.followed[first])
     if as_told or carried[0] == (told, np.inf):
         return _press(session, tissue, told, support, peak), ()

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from benchmark.files import load_scenario
 from benchmark.sessions import SHIPPED
 from benchmark.sessions.phantom_sheet import TRUE_FACTOR
 
@@ -71,6 +72,9 @@ def test_a_session_run_compares_measured_with_both_models(benchmark_cli, tmp_pat
     assert document["trials"]["count"] == 13
     assert (document["protocol"], document["trials"]["protocol"]) == ("prediction", "circular")
     check_validation(tmp_path / "r/tables/validation.csv", measured)
+    fitted = pd.read_csv(tmp_path / "r/tables/fitted_parameters.csv").set_index("name").value
+    (term,) = load_scenario(tmp_path / "r/scenario.toml").tissue.layers[0].relaxation
+    assert (term.g, term.tau) == pytest.approx((fitted["relaxation.g_1"], fitted["relaxation.tau_1"]))
     assert benchmark_cli("report", tmp_path / "r", "--out", tmp_path / "again").code == 0
     again = (tmp_path / "again/report.html").read_text()
     for text in ("Synthetic data", "Circular comparison", document["trials"]["headline"][1:], "Fitted parameters"):
