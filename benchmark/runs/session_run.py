@@ -29,7 +29,7 @@ from benchmark.runs.fitted_session import FittedSession, fit_trials
 from benchmark.runs.options import Listener, RunOptions
 from benchmark.runs.record import RunRecord
 from benchmark.runs.scenario_run import run_scenario
-from benchmark.runs.trials.measured import MeasuredComparison, TrialPrediction
+from benchmark.runs.trials.measured import MeasuredComparison, TrialPrediction, peak_force
 from benchmark.side_by_side import NAMES, SAME_ANSWER
 
 OBSERVATIONS = 100
@@ -107,7 +107,7 @@ def session_scenario(found: FittedSession, *, as_told: bool) -> tuple[Scenario, 
     carries; a scenario `as_told` keeps tool and force.
     """
     session = found.session
-    first, peak = session.setups[0], float(np.median([trial.peak for trial in found.fit.trials]))
+    first, peak = session.setups[0], _median_peak(found)
     told, support, tissue = *first[1:], relaxing_tissue(found, first[0])
     carried = carried_forces(found.followed[first])
     if as_told or carried[0] == (told, np.inf):
@@ -123,6 +123,13 @@ def session_scenario(found: FittedSession, *, as_told: bool) -> tuple[Scenario, 
     name, most = tool_name(strongest, told), SAFE * min(forces[strongest], peak)
     said = f"the finite elements do not follow the trials' median peak of {peak:.3g} N: both models have {name}"
     return _press(session, tissue, strongest, support, most), (f"{said}, to {most:.3g} N",)
+
+
+def _median_peak(found: FittedSession) -> float:
+    """Median of the peak forces of the trials that were fitted, above their zeros, N."""
+    data = {trial.key: trial for trial in found.trials}
+    records = [(data[fit.key], fit.zero) for fit in found.fit.trials]
+    return float(np.median([peak_force(trial.time, trial.force) - zero for trial, zero in records]))
 
 
 def _press(session: Session, tissue: Tissue, tool: Tool, support: Support, peak: float) -> Scenario:

@@ -17,7 +17,7 @@ from benchmark.comparison import (
 from benchmark.models import Array
 from benchmark.runs.record import RunRecord
 from benchmark.runs.refinement import ORDER, Level, convergence
-from benchmark.runs.trials.measured import MeasuredComparison, TrialPrediction
+from benchmark.runs.trials.measured import MeasuredComparison, TrialPrediction, peak_weights
 from benchmark.side_by_side import ModelRun
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ def _numerical(record: RunRecord, levels: tuple[Level, ...]) -> Iterator[Row]:
 
 
 def _measured(record: RunRecord, measured: MeasuredComparison, levels: tuple[Level, ...]) -> Iterator[Row]:
-    """Peak force of the trials: each model's against the measured, at the instant of the trial's own peak."""
+    """Peak force of the trials: each model's against the measured, at the rows of the trial's own peak."""
     every = range(len(measured.trials))
     for protocol, run, data, model in _peaks(record, measured):
         yield from _told("peak force", protocol, run.key, _check(measured, run, levels, data, model, every), "N")
@@ -180,12 +180,13 @@ def _known(scatter: Any, uncertainty: Any) -> float | None:
 def _peaks(record: RunRecord, measured: MeasuredComparison) -> Iterator[tuple[str, ModelRun, Array, Array]]:
     """Protocol, model, and (R,) measured and simulated peak forces, N."""
     trials = measured.trials
-    peaks = [int(trial.force.argmax()) for trial in trials]
-    data = np.array([trial.force[at] for trial, at in zip(trials, peaks, strict=True)])
+    rules = [peak_weights(trial.time, trial.force) for trial in trials]
+    data = np.array([rule @ trial.force for rule, trial in zip(rules, trials, strict=True)])
     for protocol, run, answers in _answers(record, trials):
         if any(each is None for each in answers):
             continue
-        model = np.array([each[at] for each, at in zip(answers, peaks, strict=True) if each is not None])
+        pairs = zip(rules, answers, strict=True)
+        model = np.array([rule[rule != 0.0] @ each[rule != 0.0] for rule, each in pairs if each is not None])
         if np.isfinite(model).all():
             yield protocol, run, data, model
 

@@ -11,7 +11,7 @@ from benchmark.identification import FittedParameter
 from benchmark.models import Array
 from benchmark.runs.report.film_section import FilmPart, film_part
 from benchmark.runs.report.values import MM, measured_headline
-from benchmark.runs.trials.measured import MeasuredComparison, TrialPrediction
+from benchmark.runs.trials.measured import MeasuredComparison, TrialPrediction, peak_force
 from benchmark.side_by_side import SideBySide
 from reports import Block, Bullets, Column, Download, Notice, Paragraph, Section, Table
 from reports.figures.measured import TrialCurve, measured
@@ -116,7 +116,7 @@ def _residuals(trials: Sequence[TrialPrediction], pair: SideBySide) -> Table:
 
 def _residual_row(trial: TrialPrediction) -> tuple[object, ...]:
     models = (trial.fem_force, trial.wave_force, trial.held_out_force)
-    peak = float(trial.force.max())
+    peak = peak_force(trial.time, trial.force)
     return (trial.trial, trial.condition, peak, *(_rms_percent(trial.force, model, peak) for model in models))
 
 

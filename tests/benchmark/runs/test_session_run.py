@@ -57,3 +57,11 @@ def test_the_relaxation_that_films_told_is_in_both_models_side_by_side(relaxatio
     kept = session_run.relaxing_tissue(found, relaxing)
     assert all(layer.relaxation == own for layer in kept.layers)
     assert len(session_run._told_otherwise(found, kept)) == (relaxation != NONE)
+
+
+def test_the_press_goes_to_the_peak_of_the_trials_and_not_of_their_noise() -> None:
+    random, time = np.random.default_rng(1), np.arange(200) / 20.0
+    trials = [SimpleNamespace(key=n, time=time, force=0.3 + random.normal(0.0, 5e-3, 200)) for n in range(5)]
+    fit = SimpleNamespace(trials=[SimpleNamespace(key=n, zero=0.1) for n in range(5)])
+    found = session_run._median_peak(SimpleNamespace(trials=trials, fit=fit))
+    assert found == pytest.approx(0.2, abs=1e-3)

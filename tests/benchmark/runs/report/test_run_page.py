@@ -63,7 +63,7 @@ def _measured(forces: dict[str, tuple[float, ...]], factor: float) -> SimpleName
     """Trials with peak forces (N) by condition, beside models with `factor` times the mean of all."""
     made = [(name, force) for name, each in forces.items() for force in each]
     told = factor * float(np.mean([force for _, force in made]))
-    same = {"fem_force": np.array([0.0, told]), "wave_force": None, "held_out_force": None}
+    same = {"time": np.arange(2.0), "fem_force": np.array([0.0, told]), "wave_force": None, "held_out_force": None}
     trials = tuple(SimpleNamespace(condition=name, force=np.array([0.0, force]), **same) for name, force in made)
     stiffness = SimpleNamespace(value=1.0, ci95_low=0.99, ci95_high=1.01, log_std=0.01, trials=len(trials))
     return SimpleNamespace(trials=trials, fit=SimpleNamespace(stiffness=stiffness))
