@@ -27,7 +27,7 @@ from reports import (
 
 WORDS: Final = {
     SHOWN: "every question has an answer",
-    WEAK: "answered by limited evidence alone: synthetic, circular or in part",
+    WEAK: "answered by synthetic, circular or partial evidence alone",
     PARTLY: "some questions have no answer",
     MISSING: "nothing was given",
     CONTRADICTED: "evidence speaks against the model",

@@ -21,7 +21,7 @@ from benchmark.errors import InputError
 from benchmark.verification.cases import all_cases, families
 from reports.manifest import foreign_files, read_manifest
 
-SYNTHETIC, CIRCULAR, PARTIAL = "synthetic data", "circular: fitted to these trials", "a part of the cases alone"
+SYNTHETIC, CIRCULAR, PARTIAL = "synthetic data", "circular: fitted to these trials", "partial"
 AGAINST = "speaks against"
 
 
@@ -38,7 +38,7 @@ class Evidence:
     source
         The file that has them.
     limits
-        Why it shows less than it seems to: synthetic, circular, or a result that speaks against the model.
+        Why it shows less than it seems to: synthetic, circular, a part only, or a result that speaks against the model.
     """
 
     question: str
@@ -315,9 +315,11 @@ def _against_trials(result: ResultFolder, limits: tuple[str, ...]) -> Iterator[E
         unit, fitted = rows["unit"].iloc[0], "circular" in str(protocol)
         own = (*limits, CIRCULAR) if fitted else limits
         missing = str(told.get("not assessed", "none"))
-        says = f"{model}, {quantity}: E {error:.3g} {unit}, u_val {uncertainty:.3g} {unit}; not assessed: {missing}."
-        yield Evidence("rigour", says, source, own)
-        if math.isfinite(error) and math.isfinite(uncertainty):
+        lone = "u_D" in missing.split(", ")
+        u_val = "no u_val without u_D, which needs a replicate" if lone else f"u_val {uncertainty:.3g} {unit}"
+        says = f"{model}, {quantity}: E {error:.3g} {unit}, {u_val}; not assessed: {missing}."
+        yield Evidence("rigour", says, source, (*own, PARTIAL) if lone else own)
+        if not lone and math.isfinite(error) and math.isfinite(uncertainty):
             within = abs(error) <= 2 * uncertainty
             says = f"{model}, {quantity} ({protocol}): |E| is {abs(error) / uncertainty:.2g} u_val."
             yield Evidence("agreement", says, source, own if within else (*own, AGAINST))
@@ -333,8 +335,8 @@ def _by_condition(result: ResultFolder, limits: tuple[str, ...]) -> Iterator[Evi
     if table is None or table["condition"].nunique() < 2:
         return
     for row in table.to_dict("records"):
-        error, uncertainty, data = (float(row[name]) for name in ("E_N", "u_val_N", "D_N"))
-        if abs(error) > 2 * uncertainty > 0.0:
+        error, uncertainty, data, scatter = (float(row[name]) for name in ("E_N", "u_val_N", "D_N", "u_D_N"))
+        if math.isfinite(scatter) and abs(error) > 2 * uncertainty > 0.0:
             who = f"{row['simulation']}, peak force of {row['condition']} ({row['protocol']})"
             off = plain_percent(100.0 * error / data, sign=True)
             says = f"{who}: {off} off, |E| is {abs(error) / uncertainty:.2g} u_val."

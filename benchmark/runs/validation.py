@@ -33,6 +33,7 @@ LEVELS = (
     "model", "refined", "level", "unknowns", "load_steps", "setup_s", "wall_s", "cpu_s", "wall_per_step_ms", "layer",
     "max_mm",
 )  # fmt: skip
+OF_U_VAL = ("u_val", "model error low", "model error high")
 MM = 1e3
 
 
@@ -111,10 +112,15 @@ def _numerical(record: RunRecord, levels: tuple[Level, ...]) -> Iterator[Row]:
 
 
 def _measured(record: RunRecord, measured: MeasuredComparison, levels: tuple[Level, ...]) -> Iterator[Row]:
-    """Peak force of the trials: each model's against the measured, at the rows of the trial's own peak."""
+    """Peak force of the trials: each model's against the measured, at the rows of the trial's own peak.
+
+    Without an u_D, which needs a replicate, there is no u_val.
+    """
     every = range(len(measured.trials))
     for protocol, run, data, model in _peaks(record, measured):
-        yield from _told("peak force", protocol, run.key, _check(measured, run, levels, data, model, every), "N")
+        found = _check(measured, run, levels, data, model, every)
+        for row in _told("peak force", protocol, run.key, found, "N"):
+            yield (*row[:4], None, row[5]) if found.measured is None and row[3] in OF_U_VAL else row
         for measure, _, _, value in area_metric(data, model).rows():
             yield "peak force", protocol, run.key, measure, value, "N"
 
@@ -130,7 +136,8 @@ def condition_columns(record: RunRecord) -> Columns | None:
             at = [k for k, trial in enumerate(measured.trials) if trial.condition == name]
             found = _check(measured, run, record.levels, data, model, at)
             parts = (found.numerical, found.inputs, found.measured)
-            rows.append((name, protocol, run.key, len(at), found.data, found.error, *parts, found.uncertainty))
+            whole = None if found.measured is None else found.uncertainty
+            rows.append((name, protocol, run.key, len(at), found.data, found.error, *parts, whole))
     return {column: [row[place] for row in rows] for place, column in enumerate(BY_CONDITION)}
 
 

@@ -85,8 +85,9 @@ WORDS = (
     "E is simulation minus data (ASME V&V 20). u_num is the standard uncertainty from coarser and finer runs (grid "
     "convergence index over 1.15), u_input that of the fitted stiffness, u_D the standard error over replicate trials "
     "(of several conditions within them: what these differ by is an error of the model, told by condition), "
-    "u_val their root sum of squares. The model error lies within E plus or minus u_val; |E| below u_val means that "
-    "the validation cannot see a model error, not that there is none. Code to code nothing is measured, and u_val "
+    "u_val their root sum of squares, which there is not beside trials of which none is a replicate. The model error "
+    "lies within E plus or minus u_val; |E| below u_val means that the validation cannot see a model error, not that "
+    "there is none. Code to code nothing is measured, and u_val "
     "holds numerical uncertainties alone. The area metric is the area between the distributions of simulated and "
     "measured peak forces. A protocol marked circular compares a model with the trials it was fitted to."
 )

@@ -62,7 +62,31 @@ def test_a_condition_that_is_missed_speaks_against_the_model_beside_a_mean_that_
     assert found == [(words, (AGAINST,))]
 
 
-def run_result(folder: Path, *, synthetic: bool = False, conditions: str = "") -> Path:
+LONE = """quantity,protocol,simulation,measure,value,unit
+peak force,fitted to these trials (circular),fem,E,-0.000452,N
+peak force,fitted to these trials (circular),fem,u_val,{},N
+peak force,fitted to these trials (circular),fem,not assessed,"u_num, u_D",
+"""
+
+
+@pytest.mark.parametrize("told", ["", "0.000221"])
+def test_without_a_replicate_nothing_is_judged(tmp_path, told) -> None:
+    """An u_val of the fitted stiffness alone spoke against a model that is right."""
+    found = answers(run_result(tmp_path / "r", validation=LONE.format(told)))
+    assert "agreement" not in found
+    ((says, limits),) = found["rigour"]
+    assert "no u_val without u_D, which needs a replicate; not assessed: u_num, u_D" in says
+    assert PARTIAL in limits
+
+
+def test_conditions_without_a_replicate_are_not_judged(tmp_path) -> None:
+    """They were, by the u_val that older results have there."""
+    lone = CONDITIONS.replace(",0.1,0.02,0.102", ",0.1,,0.1")
+    found = answers(run_result(tmp_path / "r", conditions=lone))
+    assert not any("deep" in says for says, _ in found["agreement"])
+
+
+def run_result(folder: Path, *, synthetic: bool = False, conditions: str = "", validation: str = VALIDATION) -> Path:
     layer = {"percent_error_max": 0.2, "equivalent": True}
     document = {
         "schema": 1, "name": "skin", "complete": True, "equivalence_margin": 0.02,
@@ -71,7 +95,7 @@ def run_result(folder: Path, *, synthetic: bool = False, conditions: str = "") -
         "trials": {"session": "day", "synthetic": synthetic, "count": 4},
     }  # fmt: skip
     more = {"tables/validation_conditions.csv": conditions} if conditions else {}
-    return result(folder, {"results.json": document, "tables/validation.csv": VALIDATION, **more})
+    return result(folder, {"results.json": document, "tables/validation.csv": validation, **more})
 
 
 def test_a_run_tells_its_own_error_and_that_of_its_prediction(tmp_path) -> None:

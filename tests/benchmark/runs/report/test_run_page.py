@@ -116,6 +116,13 @@ def test_a_single_trial_of_a_condition_scatters_as_the_others_do(finished) -> No
 
 
 def test_a_single_trial_tells_no_uncertainty_to_judge_by(finished) -> None:
+    record = replace(finished, measured=_measured({"a": (1.0,)}, 0.99))
+    columns = validation_columns(record, ())
+    told = dict(zip(columns["measure"], columns["value"], strict=True))
+    assert [told[name] for name in ("u_D", "u_val", "model error low", "model error high")] == [None] * 4
+    assert told["E"] == pytest.approx(-0.01)
+    assert told["not assessed"] == "u_num, u_D"
+    assert condition_columns(record)["u_val_N"] == [None]
     assert _verdict_beside(finished, {"a": (1.0,)}, 0.99).status == "good"
     assert "no replicate tells how surely" in _verdict_beside(finished, {"a": (1.0,)}, 0.9).headline
 
