@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import islice
-from typing import TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -96,6 +96,50 @@ class SetupDerivative:
 
 
 @dataclass(frozen=True, eq=False)
+class Addition:
+    """What an amount of something that the set-up as told has none of adds, from presses with some amounts of it.
+
+    Over the amount, it goes between them as a natural cubic spline over their logarithm does; below the first and
+    beyond the last in proportion.
+
+    Attributes
+    ----------
+    amounts : (n,) array
+        SI, rising from above zero.
+    force : (n, k) array
+        N over the amount, of each.
+    outward, sink : tuple of SeparableField
+        m over the amount, of each; empty where no face is known.
+    powers : mapping of key to (k,) array
+        The powers of set-up parameters with which the added force goes.
+    """
+
+    amounts: Array
+    force: Array
+    outward: tuple[SeparableField, ...] = ()
+    sink: tuple[SeparableField, ...] = ()
+    powers: Mapping[str, Array] = field(default_factory=dict)
+
+    def weights(self, amount: float) -> Array:
+        """(n,) by which what a unit adds at each of the amounts counts to what an amount adds."""
+        if self.amounts.size == 1:
+            return np.array([amount])
+        at = np.log(np.clip(amount, self.amounts[0], self.amounts[-1]))
+        return np.asarray(amount * self._between(at))
+
+    @cached_property
+    def _between(self) -> CubicSpline:
+        return CubicSpline(np.log(self.amounts), np.eye(self.amounts.size), bc_type="natural")
+
+    def force_of(self, amount: float, changes: Mapping[str, float]) -> Array:
+        """(k,) N that an amount adds, with set-up parameters changed."""
+        more = self.weights(amount) @ self.force
+        ways = {key: way_of(key, changes[key]) for key in self.powers if changes.get(key)}
+        grown = sum((self.powers[key] * way for key, way in ways.items()), start=np.zeros_like(more))
+        return np.asarray(np.exp(np.clip(grown, -MOST_GROWN, MOST_GROWN)) * more)
+
+
+@dataclass(frozen=True, eq=False)
 class ElasticTable:
     """Force and lower face over depth.
 
@@ -113,9 +157,9 @@ class ElasticTable:
         Motion of the lower face away from the axis and along the press.
     by : mapping of key to SetupDerivative
         Parameters act each by itself: there are no mixed terms.
-    added : mapping of key to SetupDerivative
-        What one unit of something that the set-up as told has none of adds (SI, first order): a tension before the
-        press by its `physics.pretension`.
+    added : mapping of key to Addition
+        What something that the set-up as told has none of adds: a tension before the press by its
+        `physics.pretension`.
     note : str
         What a reader must know of it.
     """
@@ -126,7 +170,7 @@ class ElasticTable:
     outward: SeparableField | None = None
     sink: SeparableField | None = None
     by: Mapping[str, SetupDerivative] = field(default_factory=dict)
-    added: Mapping[str, SetupDerivative] = field(default_factory=dict)
+    added: Mapping[str, Addition] = field(default_factory=dict)
     note: str = ""
 
     def force_with(self, changes: Mapping[str, float]) -> Array:
@@ -146,9 +190,9 @@ class ElasticTable:
         )
         return np.asarray(self.force * np.exp(np.clip(grown, -MOST_GROWN, MOST_GROWN)))
 
-    def force_added(self, amounts: Mapping[str, float]) -> Array:
-        """(k,) N that amounts of what the set-up as told has none of add."""
-        parts = (amount * self.added[key].force[0] for key, amount in amounts.items())
+    def force_added(self, amounts: Mapping[str, float], changes: Mapping[str, float] = NONE) -> Array:
+        """(k,) N that amounts of what the set-up as told has none of add, with parameters changed as `force_with`."""
+        parts = (self.added[key].force_of(amount, changes) for key, amount in amounts.items())
         return np.asarray(sum(parts, start=np.zeros_like(self.force)))
 
     @cached_property
@@ -156,39 +200,59 @@ class ElasticTable:
         """Orders (o, k) of the logarithm of the force by the way of each parameter; 0 where there is no force."""
         return {key: _of_logarithm(self.force, each.force, is_absolute(key)) for key, each in self.by.items()}
 
-    def outward_with(self, changes: Mapping[str, float], amounts: Mapping[str, float] = NONE) -> SeparableField | None:
+    def outward_with(
+        self,
+        changes: Mapping[str, float],
+        amounts: Mapping[str, float] = NONE,
+        shown: Mapping[str, float] = NONE,
+    ) -> SeparableField | None:
         """The outward motion with parameters changed, as `force_with`, linear or of second order in the way.
 
-        `amounts` are of what the set-up as told has none of, linear.
+        `amounts` are of what the set-up as told has none of, `shown` the part of each that the face shows (1).
         """
         parts = [part for key, change in self._known(changes) for part in _moved(self.by[key].outward, key, change)]
-        parts += [(amount, part) for key, amount in amounts.items() for part in self.added[key].outward]
+        parts += self._parts("outward", amounts, shown)
         return None if self.outward is None else self.outward.plus(parts)
 
-    def sink_with(self, changes: Mapping[str, float], amounts: Mapping[str, float] = NONE) -> SeparableField | None:
+    def sink_with(
+        self,
+        changes: Mapping[str, float],
+        amounts: Mapping[str, float] = NONE,
+        shown: Mapping[str, float] = NONE,
+    ) -> SeparableField | None:
         """The sinking with parameters changed, as `outward_with`."""
         parts = [part for key, change in self._known(changes) for part in _moved(self.by[key].sink, key, change)]
-        parts += [(amount, part) for key, amount in amounts.items() for part in self.added[key].sink]
+        parts += self._parts("sink", amounts, shown)
         return self.sink if self.sink is None or not parts else self.sink.plus(parts)
 
     def compact(self) -> ElasticTable:
         """The same table with the fields of each kind on one basis."""
         if self.outward is None or self.sink is None:
             return self
-        parts = [*self.by.values(), *self.added.values()]
+        parts: list[SetupDerivative | Addition] = [*self.by.values(), *self.added.values()]
         out = SeparableField.on_one_basis([self.outward, *(f for each in parts for f in each.outward)])
         sunk = SeparableField.on_one_basis([self.sink, *(f for each in parts for f in each.sink)])
         outs, sinks = iter(out[1:]), iter(sunk[1:])
-        by, added = (
-            {
-                key: SetupDerivative(
-                    each.force, tuple(islice(outs, len(each.outward))), tuple(islice(sinks, len(each.sink)))
-                )
-                for key, each in kind.items()
+
+        def faces(each: SetupDerivative | Addition) -> dict[str, Any]:
+            return {
+                "outward": tuple(islice(outs, len(each.outward))),
+                "sink": tuple(islice(sinks, len(each.sink))),
             }
-            for kind in (self.by, self.added)
-        )
+
+        by = {key: replace(each, **faces(each)) for key, each in self.by.items()}
+        added = {key: replace(each, **faces(each)) for key, each in self.added.items()}
         return replace(self, outward=out[0], sink=sunk[0], by=by, added=added)
+
+    def _parts(
+        self, face: Literal["outward", "sink"], amounts: Mapping[str, float], shown: Mapping[str, float]
+    ) -> list[tuple[float, SeparableField]]:
+        """Factors of the fields that amounts add."""
+        parts: list[tuple[float, SeparableField]] = []
+        for key, amount in amounts.items():
+            fields, weights = getattr(self.added[key], face), self.added[key].weights(amount)
+            parts += [(shown.get(key, 1.0) * float(w), f) for w, f in zip(weights, fields, strict=False)]
+        return parts
 
     def _known(self, changes: Mapping[str, float]) -> list[tuple[str, float]]:
         return [(key, change) for key, change in changes.items() if key in self.by]

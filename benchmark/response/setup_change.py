@@ -25,7 +25,7 @@ OTHER_CONTACT = {
     "rigid_frictionless": "rigid_bonded",
 }
 
-RADIUS = "tool.radius"
+RADIUS, HOLE_RADIUS = "tool.radius", "support.hole_radius"
 THICKNESS = "thickness"
 """Key of the thickness of all layers together."""
 STIFFNESS = "stiffness"

@@ -87,8 +87,7 @@ class ShapedTable:
         second, third = 6 * inside**2 - 6 * inside + 1, 20 * inside**3 - 30 * inside**2 + 12 * inside - 1
         force = self.table.force_with(shape.setup)
         bent = force * (1.0 + shape.bend * second + shape.turn * third) * np.maximum(x, 1e-4) ** shape.exponent
-        more = self.table.force_added({key: amount for key, (amount, _) in shape.added.items()})
-        return np.asarray(np.exp(shape.modulus) * np.maximum(bent, 0.0) + more)
+        return np.asarray(np.exp(shape.modulus) * (np.maximum(bent, 0.0) + self._more))
 
     def thicker(self, share: float) -> ShapedTable:
         """Of a specimen whose layers are all thicker by a share."""
@@ -112,18 +111,28 @@ class ShapedTable:
     @cached_property
     def outward(self) -> SeparableField | None:
         """The outward motion of the lower face with this set-up."""
-        return self.table.outward_with(self.shape.setup, self._shown)
+        return self.table.outward_with(self.shape.setup, self._amounts, self._shown)
 
     @cached_property
     def sink(self) -> SeparableField | None:
         """Its sinking with this set-up."""
-        return self.table.sink_with(self.shape.setup, self._shown)
+        return self.table.sink_with(self.shape.setup, self._amounts, self._shown)
+
+    @property
+    def _more(self) -> Array:
+        """(k,) N that what the set-up as told has none of adds, over the factor on the moduli."""
+        return self.table.force_added(self._amounts, self.shape.setup)
+
+    @property
+    def _amounts(self) -> dict[str, float]:
+        """Of that in the table's specimen: a stress does and moves the less, the stiffer the specimen."""
+        shape = self.shape
+        return {key: amount * float(np.exp(-shape.modulus)) for key, (amount, _) in shape.added.items()}
 
     @property
     def _shown(self) -> dict[str, float]:
-        """Amounts that the fields show: a stress moves the less, the stiffer the specimen."""
-        shape = self.shape
-        return {key: part * amount * np.exp(-shape.modulus) for key, (amount, part) in shape.added.items()}
+        """The part of each that the fields show."""
+        return {key: part for key, (_, part) in self.shape.added.items()}
 
     def lower_face(self, spread: LowerFaceMotion, rest: Array) -> tuple[Array, Array]:
         """Positions (n, m, 2) and sinking (n, m) of markers at rest positions (m, 2), m."""

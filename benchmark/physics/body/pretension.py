@@ -33,7 +33,7 @@ DESCRIPTION = EffectDescription(
     sentence="The specimen was under tension before the press, which adds a stiffness that is there from the start.",
     equation="F = f(d) + k d; over a hole k = 2 pi S t / ln(R / a) (membrane), on a base k = (S / d) dF/dS "
     "of the layers; q times its share of F moves the lower face by t d / (2 r ln(R / a)). Over a hole that finite "
-    "elements cover, discovery takes force and face from their own press under S",
+    "elements cover, discovery takes force and face from their own presses under S",
     source="Timoshenko and Woinowsky-Krieger, Theory of Plates and Shells, chapter 13; M. A. Biot, Mechanics of "
     "Incremental Deformations",
     parameters=(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmark.response.elastic_table import ElasticTable, SeparableField, SetupDerivative
+from benchmark.response.elastic_table import Addition, ElasticTable, SeparableField, SetupDerivative
 
 DEPTH = np.linspace(0.0, 3e-3, 50)
 FORCE = 200.0 * DEPTH**1.2
@@ -47,7 +47,7 @@ def test_what_the_set_up_as_told_has_none_of_adds_in_proportion_and_stays_on_one
     radius = np.array([0.0, 1e-3, 2e-3, 3e-3])
     out, sunk = (SeparableField(DEPTH[None], row[None]) for row in (radius, 3e-3 - radius))
     more = SeparableField(1e-3 * DEPTH[None] ** 2, radius[None] ** 2)  # small by its unit
-    added = {"physics.pretension": SetupDerivative((2.0 * FORCE)[None], (more,), (out,))}
+    added = {"physics.pretension": Addition(np.array([200.0]), (2.0 * FORCE)[None], (more,), (out,))}
     found = ElasticTable(DEPTH, FORCE, radius, out, sunk, added=added).compact()
     amounts = {"physics.pretension": 300.0}
     assert found.force_added(amounts) == pytest.approx(600.0 * FORCE, rel=1e-12)
@@ -57,3 +57,28 @@ def test_what_the_set_up_as_told_has_none_of_adds_in_proportion_and_stays_on_one
     assert sink is not None
     np.testing.assert_allclose(outward.table, out.table + 300.0 * more.table, atol=1e-9 * out.table.max())
     np.testing.assert_allclose(sink.table, sunk.table + 300.0 * out.table, atol=1e-9 * sunk.table.max())
+
+
+def test_what_is_added_follows_its_amount_and_the_set_up_and_a_face_shows_part_of_it() -> None:
+    amounts = np.geomspace(10.0, 1e5, 5)
+
+    def per_unit(amount: float | np.ndarray) -> np.ndarray:
+        return np.asarray(1.0 + 0.5 / (1.0 + amount / 1e3))
+
+    radius = np.array([0.0, 1e-3, 2e-3])
+    fields = tuple(SeparableField(float(each) * DEPTH[None], radius[None]) for each in per_unit(amounts))
+    powers = {"tool.radius": 0.5 + 0.0 * DEPTH, "fat.thickness": 1.0 + 0.0 * DEPTH}
+    more = Addition(amounts, per_unit(amounts)[:, None] * FORCE, fields, fields, powers)
+    still = SeparableField(DEPTH[None], radius[None])
+    found = ElasticTable(DEPTH, FORCE, radius, still, still, added={"physics.pretension": more}).compact()
+    for amount in (1.0, 10.0, 300.0, 2e3, 3e4):
+        told = {"physics.pretension": amount}
+        wanted = amount * (per_unit(amount) if amount > 10.0 else per_unit(10.0))
+        assert found.force_added(told) == pytest.approx(wanted * FORCE, rel=0.03)
+        outward = found.outward_with({}, told, {"physics.pretension": 0.4})
+        assert outward is not None
+        assert outward.table[-1] - still.table[-1] == pytest.approx(0.4 * wanted * still.table[-1], rel=0.03)
+    beyond = found.force_added({"physics.pretension": 1e7})
+    assert beyond == pytest.approx(1e7 * per_unit(1e5) * FORCE, rel=1e-9)
+    changed = found.force_added({"physics.pretension": 1e3}, {"tool.radius": 0.21, "fat.thickness": -0.2})
+    assert changed == pytest.approx(found.force_added({"physics.pretension": 1e3}) * 1.1 * 0.8, rel=1e-9)

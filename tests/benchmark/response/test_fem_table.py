@@ -13,7 +13,7 @@ from benchmark.files import load_session
 from benchmark.response import fem_table as module
 from benchmark.response.elastic_table import ElasticTable, SetupDerivative
 from benchmark.response.fem_table import _with_force, fem_or_wave_table, fem_table
-from benchmark.response.setup_change import PRETENSION, RADIUS, changed_setup
+from benchmark.response.setup_change import HOLE_RADIUS, PRETENSION, RADIUS, changed_setup
 from benchmark.response.wave_table import STEP
 
 HOLE = '[support]\nkind = "hole"\nhole_radius = "30 mm"\n'
@@ -101,18 +101,33 @@ def test_where_the_elements_have_no_answer_the_wave_goes_on_and_it_is_said(sheet
         fem_table(sheet)(sheet.specimen, trial.tool, trial.support, 2e-3)
 
 
-def test_a_tension_before_the_press_adds_what_a_press_under_it_shows(sheet) -> None:
+@pytest.mark.parametrize(("share", "close"), [(0.05, 3e-4), (0.25, 3e-4), (1.2, 1e-3), (5.0, 3e-3)])
+def test_a_tension_before_the_press_adds_what_a_press_under_it_shows(sheet, share: float, close: float) -> None:
     trial = sheet.trials[0]
     told = fem_table(sheet)(sheet.specimen, trial.tool, trial.support, 2e-3)
     wide = np.log(trial.support.hole_radius / trial.tool.radius)
-    stress = 0.25 * told.force[-1] * wide / (2.0 * np.pi * sheet.specimen.thickness * told.depth[-1])
+    stress = share * told.force[-1] * wide / (2.0 * np.pi * sheet.specimen.thickness * told.depth[-1])
     tense = replace(sheet, settings={**sheet.settings, PRETENSION: f"{stress:.9g} Pa"})
     pressed = fem_table(tense)(sheet.specimen, trial.tool, trial.support, 2e-3)
     assert not pressed.added
     added, outward = told.force_added({PRETENSION: stress}), told.outward_with({}, {PRETENSION: stress})
     more = pressed.force - told.force
     assert added[50:] == pytest.approx(more[50:], rel=0.03)
+    assert told.force[50:] + added[50:] == pytest.approx(pressed.force[50:], rel=close)
     moved, shown = (each.table[-1] - told.outward.table[-1] for each in (pressed.outward, outward))
     assert shown == pytest.approx(moved, abs=0.08 * np.abs(moved).max())
     membrane = 2.0 * np.pi * stress * sheet.specimen.thickness * told.depth / wide
     assert more[50] == pytest.approx(membrane[50], rel=0.25)  # Timoshenko and Woinowsky-Krieger; bending adds to it
+
+
+@pytest.mark.parametrize("key", [RADIUS, HOLE_RADIUS, "layer.thickness"])
+def test_what_a_tension_adds_goes_with_the_set_up(sheet, key: str) -> None:
+    trial, change = sheet.trials[0], 0.1
+    setup = sheet.specimen, trial.tool, trial.support
+    key = key.replace("layer", sheet.specimen.layers[0].name)
+    told, stress = fem_table(sheet, (key,))(*setup, 2e-3), 2e3
+    tense = replace(sheet, settings={**sheet.settings, PRETENSION: f"{stress:.9g} Pa"})
+    changed = changed_setup(*setup, key, change)
+    more = fem_table(tense, ())(*changed, 2e-3).force - fem_table(sheet, ())(*changed, 2e-3).force
+    assert told.force_added({PRETENSION: stress}, {key: change})[50:] == pytest.approx(more[50:], rel=0.01)
+    assert told.force_added({PRETENSION: stress})[-1] != pytest.approx(more[-1], rel=0.03)

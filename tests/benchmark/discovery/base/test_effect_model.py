@@ -12,7 +12,7 @@ from benchmark.discovery.base.effect_model import EffectModel
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.files import load_session
 from benchmark.physics import catalogue
-from benchmark.response.elastic_table import SeparableField, SetupDerivative
+from benchmark.response.elastic_table import Addition, SeparableField
 from benchmark.response.wave_table import wave_table
 from benchmark.sessions import SHIPPED
 
@@ -52,7 +52,8 @@ def test_a_tension_that_the_table_carries_is_the_tables_not_the_catalogues(base)
     problem, effect = base.model.problem, catalogue_entry("pretension")
     tables = []
     for table in problem.tables:
-        more = SetupDerivative(1e-6 * table.force[None], (scaled(table.outward),), (scaled(table.sink),))
+        parts = 1e-6 * table.force[None], (scaled(table.outward),), (scaled(table.sink),)
+        more = Addition(np.array([1e4]), *parts)
         tables.append(replace(table, added={"physics.pretension": more}))
     model = EffectModel(replace(problem, tables=tuple(tables)), (effect,))
     stress, part = 5e4, 0.4
