@@ -392,6 +392,10 @@ that they led to. On seed 71, told as it is, it was 77 of 78 and 18 of 30."""
 STRAINED = 1e-3
 """P of the base's bends under their priors, beside the effects, below which no effect is called all that is missing:
 a set-up that was told wrongly may look like one. First choice: sessions told rightly rarely reach it."""
+MOVED_FAR = 5.0
+"""Standard deviations of what was told of the set-up from which a warning says that it has moved beside the effects,
+even where that costs less than their forms may miss. First choice: five are no chance, and the wrong form of a
+pretension had moved a hole by 21."""
 ONE_SPECIMEN = 0.3
 """Scatter of the logarithm of the trials' gains from which they are no replicates of one specimen. First choice."""
 SMALL_IN_PRACTICE = 2.0

@@ -54,7 +54,13 @@ from benchmark.discovery.detection.disagreement import (
 from benchmark.discovery.detection.places import places, shared_places
 from benchmark.discovery.discovery_result import Discovery, Place
 from benchmark.discovery.evidence.gains import conditions, tissue_gain
-from benchmark.discovery.evidence.parameter_evidence import at_bounds, constant, undetermined, unsteady
+from benchmark.discovery.evidence.parameter_evidence import (
+    at_bounds,
+    constant,
+    moved_far,
+    undetermined,
+    unsteady,
+)
 from benchmark.discovery.evidence.pool import Listener, Pool, code_version, fingerprint, own_code, pool, silent
 from benchmark.discovery.evidence.selection import Selection, first_gain, ruled_out, select, unchosen, usable
 from benchmark.discovery.evidence.shortlist import (
@@ -321,7 +327,8 @@ def _discovery(
     nothing = word in ("cannot_tell", "no_discrepancy")
     problem, slugs = base.model.problem, tuple(effect.slug for effect in chosen.model.effects)
     closed = {slugs: closed_overall(base, answer.held)} if slugs else {}
-    large = (*large_remarks(problem, chosen.nuisance), *(() if nothing else at_bounds(chosen)))
+    beside = () if nothing else (*moved_far(chosen), *at_bounds(chosen))
+    large = (*large_remarks(problem, chosen.nuisance), *beside)
     few = remark(len(answer.selection.base.model.problem.trials), len(problem.trials))
     return Discovery(
         verdict=word,

@@ -85,6 +85,27 @@ def at_bounds(fitted: Fit) -> tuple[str, ...]:
     )
 
 
+def moved_far(fitted: Fit) -> tuple[str, ...]:
+    """A warning of what was told of the set-up and lies far off beside a fit's effects.
+
+    A form that misses the true one bends the set-up at a cost that is small beside what the effect gains: no strain.
+    """
+    problem = fitted.model.problem
+    free = [(k, name) for k, name in enumerate(problem.shapes) if name in problem.setup]
+    away = {name: float(fitted.vector[k] - fitted.prior_mean[k]) for k, name in free}
+    far = {key: change for key, change in away.items() if abs(change) > criteria.MOVED_FAR * problem.setup[key]}
+    if not (far and fitted.model.effects):
+        return ()
+    said = ", ".join(
+        f"{key} by {100.0 * change:+.2g} %, {abs(change) / problem.setup[key]:.2g} standard deviations of what was told"
+        for key, change in far.items()
+    )
+    return (
+        f"beside what is named the set-up lies far from what was told ({said}): it may make up for an effect whose "
+        "form misses, whose size, and the modulus, are then off by more than their intervals",
+    )
+
+
 def _outer(parameter: EffectParameter, inner: float) -> float:
     """A number of the vector as the parameter's value, within its bounds."""
     value = np.exp(np.clip(inner, -700.0, 700.0)) if parameter.logarithmic else inner

@@ -17,6 +17,7 @@ from benchmark.discovery.evidence.parameter_evidence import (
     by_condition,
     constant,
     determined,
+    moved_far,
     seen,
     strength_told,
     terms_told,
@@ -853,3 +854,13 @@ def test_parameters_as_large_as_they_may_be_are_told_of(value, logarithmic, said
     found = at_bounds(SimpleNamespace(model=model, vector=np.zeros(1)))
     said_of = f"strain stiffening stands at the end of what its parameters may be (b_1 = {value:.4g})"
     assert [said_of in each for each in found] == [True] * said
+
+
+@pytest.mark.parametrize(("change", "effects", "said"), [(0.214, 1, True), (0.04, 1, False), (0.214, 0, False)])
+def test_a_set_up_that_moved_far_beside_an_effect_is_warned_of(change, effects, said):
+    problem = SimpleNamespace(shapes=("modulus", "support.hole_radius", "bend"), setup={"support.hole_radius": 0.01})
+    model = SimpleNamespace(problem=problem, effects=("pretension",) * effects)
+    found = moved_far(SimpleNamespace(model=model, vector=np.array([3.0, change, 1.0]), prior_mean=np.zeros(3)))
+    assert [all(part in each for part in ("support.hole_radius by +21 %", "21 standard")) for each in found] == [
+        True
+    ] * said
