@@ -55,13 +55,27 @@ def plate_wave(scenario: Scenario) -> PreparedWave:
         follow=lambda drive: wave.run(drive.control, drive.time, drive.value),
         unknowns=wave.unknowns,
         choices=WaveChoices(None, wave.window, wave.modes, not layered and scenario.tool.contact == "rigid_bonded"),
-        warnings=(*warnings, *(() if layered else law_warnings(scenario)), *_ignored(scenario)),
+        warnings=(*warnings, *(() if layered else law_warnings(scenario)), *_tense(scenario), *_ignored(scenario)),
     )
 
 
 def sheet_pretension(scenario: Scenario) -> float:
     """The tension at rest in N/m: the stress that the scenario states times the whole thickness; 0 without one."""
     return (scenario.physics.pretension or 0.0) * scenario.tissue.thickness
+
+
+def _tense(scenario: Scenario) -> tuple[str, ...]:
+    """Say how far a sheet under tension was off the finite elements."""
+    stress = scenario.physics.pretension or 0.0
+    if stress <= 0.0:
+        return ()
+    moduli = [layer.youngs_modulus * layer.thickness for layer in scenario.tissue.layers]
+    share = stress * scenario.tissue.thickness / sum(moduli)
+    return (
+        f"over a hole the wave has its pretension, {100.0 * share:.2g} % of the sheet's modulus, by the plate theory: "
+        "on sheets of 0.05 to 0.12 of the hole's radius its force was 0.6 to 2 % below the finite elements' with 3 % "
+        "of the modulus, 1.5 to 7 % with 10 % (more the deeper, to a quarter of the radius) and 17 to 22 % with 30 %",
+    )
 
 
 def sheet_series(scenario: Scenario) -> tuple[Prony | None, tuple[str, ...]]:

@@ -138,3 +138,6 @@ def test_a_sheet_under_pretension_is_as_stiff_as_in_the_fem():
     plain = prepare("wave", load_scenario("phantom")).run(drive)
     np.testing.assert_allclose(wave.depth, fem.depth, rtol=0.04)
     assert np.all(wave.depth < 0.65 * plain.depth)
+    (told,) = [each for each in wave.warnings if "pretension" in each]
+    assert "5 % of the sheet's modulus" in told
+    assert not [each for each in plain.warnings if "pretension" in each]

@@ -63,7 +63,13 @@ def test_a_mesh_that_is_farther_off_than_the_models_may_be_apart_is_said():
 
 def test_a_wave_with_a_flat_end_is_said_under_a_round_tool() -> None:
     assert "flat end" in flat_wave(Tool(radius=5e-3, contact="rigid_frictionless", edge_radius=5e-3))[0]
-    assert not flat_wave(Tool(radius=5e-3, contact="rigid_frictionless", edge_radius=0.5e-3))
+    ball = Tool(radius=5e-3, contact="rigid_frictionless", edge_radius=5e-3)
+    assert "39 to 114 %" in flat_wave(ball, hole=True)[0]
+    assert "%" not in flat_wave(ball)[0]
+    edge = Tool(radius=5e-3, contact="rigid_frictionless", edge_radius=0.5e-3)
+    assert not flat_wave(edge)
+    assert "8 to 24 %" in flat_wave(edge, hole=True)[0]
+    assert not flat_wave(Tool(radius=5e-3, contact="uniform_pressure"), hole=True)
     assert not flat_wave(Tool(radius=5e-3, contact="rigid_bonded"))
 
 
