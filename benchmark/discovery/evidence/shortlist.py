@@ -131,8 +131,7 @@ def not_shown(study: Study, effects: Sequence[Effect]) -> dict[str, str]:
 def unseen(study: Study, effects: Sequence[Effect], more: AbstractSet[Sign] = frozenset()) -> tuple[str, ...]:
     """Slugs of effects that another motion would show, but neither these trials nor some with `more` signs do."""
     have = shown(study)
-    able = [each for each in effects if study.layout is not None or not each.needs_markers]
-    return tuple(each.slug for each in able if not _has(have | more, each) and _has(have | MOTION, each))
+    return tuple(each.slug for each in effects if not _has(have | more, each) and _has(have | MOTION, each))
 
 
 def _has(signs: AbstractSet[Sign], effect: Effect) -> bool:
