@@ -18,7 +18,6 @@ import pandas as pd
 from bench_hw.storage.regular_file import DOCUMENT, read_regular
 from benchmark.comparison.percent_error import plain_percent
 from benchmark.errors import InputError
-from benchmark.verification.cases import all_cases, families
 from reports.manifest import foreign_files, read_manifest
 
 SYNTHETIC, CIRCULAR, PARTIAL = "synthetic data", "circular: fitted to these trials", "partial"
@@ -133,19 +132,22 @@ def _of_verification(result: ResultFolder) -> Iterator[Evidence]:
     cases = result.document["cases"]
     passed = sum(bool(case["passed"]) for case in cases)
     sources = len({case["source"] for case in cases})
-    says = f"{passed} of {len(cases)} values within what is allowed, against {sources} published or closed solutions."
-    limits = (PARTIAL,) if (left := _left_out(cases)) else ()
-    says += f" Of the families of cases were not run: {', '.join(left)}." if left else ""
-    yield Evidence(
-        "closed_forms", says, result.file(result.name), limits if passed == len(cases) else (*limits, AGAINST)
+    says = f"{passed} of {len(cases)} values within what is allowed, against {sources} published or closed solutions"
+    every, left = _families([str(case["case"]) for case in cases])
+    says += f", of {len(every) - len(left)} of {len(every)} families" + (
+        f". Not run: {', '.join(left)}." if left else "."
     )
+    limits = (*((PARTIAL,) if left else ()), *(() if passed == len(cases) else (AGAINST,)))
+    yield Evidence("closed_forms", says, result.file(result.name), limits)
 
 
-def _left_out(cases: Sequence[Mapping[str, Any]]) -> tuple[str, ...]:
-    """Families of verification cases of which none is among some that were run; none where none of ours is."""
-    known = families(all_cases())
-    run = {str(case.get("case", "")).partition("/")[0] for case in cases}
-    return tuple(each for each in known if each not in run) if run & set(known) else ()
+def _families(rows: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Families of cases that `verify` has, and those of which a case is not among `rows`."""
+    from benchmark.verification.cases import all_cases, families
+
+    cases = all_cases()
+    left = [case for case in cases if not any(f"{row}/".startswith(f"{case.name}/") for row in rows)]
+    return families(cases), families(left)
 
 
 def _of_check(result: ResultFolder) -> Iterator[Evidence]:
@@ -285,7 +287,12 @@ def _second_model(found: Mapping[str, Any], source: str) -> Iterator[Evidence]:
         f"{found['name']}: {wave} against {fem} within {plain_percent(worst['percent_error_max'])} ({what}); "
         f"{shown} {', '.join(compared)}."
     )
-    yield Evidence("second_model", says, source, () if same else (AGAINST,))
+    told = found.get("verdict")
+    if told is None:
+        says, limits = f"{says} The verdict of its page is not in {source}: make the result again.", (PARTIAL,)
+    else:
+        says, limits = (says, ()) if told["status"] == "good" else (f"{says} {told['headline']}", (AGAINST,))
+    yield Evidence("second_model", says, source, limits if same else (AGAINST,))
 
 
 def _refined(result: ResultFolder) -> Iterator[Evidence]:

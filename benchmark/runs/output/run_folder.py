@@ -62,6 +62,7 @@ def write_run(record: RunRecord, folder: Path) -> RunOutcome:
     trials = None if record.measured is None else TrialsPart.of(record.measured)
     drawn = draw(record)
     page = run_page(record, environment, texts, trials, tables, pressed_picture(record, drawn))
+    document["verdict"] = {"status": page.verdict.status, "headline": page.verdict.headline}
 
     def fill(new: Path) -> None:
         for name, text in texts.items():

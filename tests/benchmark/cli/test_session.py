@@ -71,6 +71,8 @@ def test_a_session_run_compares_measured_with_both_models(benchmark_cli, tmp_pat
     deformation = pd.read_csv(tmp_path / "r/tables/max_deformation.csv")
     assert deformation.force_N.max() == pytest.approx(peaks.median(), rel=0.02)
     assert document["trials"]["count"] == 13
+    assert document["verdict"]["status"] == "good"
+    assert document["verdict"]["headline"].partition("'")[0] in page
     assert (document["protocol"], document["trials"]["protocol"]) == ("prediction", "circular")
     check_validation(tmp_path / "r/tables/validation.csv", measured)
     fitted = pd.read_csv(tmp_path / "r/tables/fitted_parameters.csv").set_index("name").value

@@ -7,8 +7,7 @@ import pytest
 
 from benchmark.dossier import make_dossier
 from benchmark.errors import InputError
-from reports import write_json, write_whole
-from tests.benchmark.dossier.test_evidence import run_result
+from tests.benchmark.dossier.test_evidence import known_cases, run_result, verified
 
 CONTEXT = """schema = 1
 name = "trainer <b>"
@@ -25,10 +24,9 @@ source = "lab book 12"
 
 
 @pytest.fixture
-def verification(tmp_path: Path) -> Path:
-    cases = [{"source": "Hayes 1972", "passed": True}]
-    write_whole(tmp_path / "v", lambda new: write_json(new / "verification.json", {"schema": 1, "cases": cases}))
-    return tmp_path / "v"
+def verification(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    known_cases(monkeypatch, "hayes")
+    return verified(tmp_path / "v", "hayes/ratio_1")
 
 
 def statuses(folder: Path) -> dict[str, str]:

@@ -7,6 +7,7 @@ import pytest
 
 from benchmark.dossier.evidence import AGAINST, CIRCULAR, PARTIAL, SYNTHETIC, evidence_of, read_result
 from benchmark.errors import InputError
+from benchmark.verification.cases import Case
 from reports import write_json, write_text, write_whole
 
 
@@ -29,12 +30,35 @@ def answers(folder: Path) -> dict[str, list[tuple[str, tuple[str, ...]]]]:
     return found
 
 
-def test_a_failed_case_speaks_against_the_code(tmp_path) -> None:
-    cases = [{"source": "Hayes 1972", "passed": True}, {"source": "Cook 1974", "passed": False}]
-    folder = result(tmp_path / "v", {"verification.json": {"schema": 1, "cases": cases}})
-    ((says, limits),) = answers(folder)["closed_forms"]
+def known_cases(patch: pytest.MonkeyPatch, *names: str) -> None:
+    """`verify` has cases of these names and no others."""
+    cases = tuple(Case(name, "made up for a test", lambda: ()) for name in names)
+    patch.setattr("benchmark.verification.cases.all_cases", lambda: cases)
+
+
+def verified(folder: Path, *names: str, passed: bool = True) -> Path:
+    """A result of `verify` with these rows."""
+    rows = [{"case": name, "source": "Hayes 1972", "passed": passed or name != names[-1]} for name in names]
+    return result(folder, {"verification.json": {"schema": 1, "cases": rows}})
+
+
+def test_a_failed_case_speaks_against_the_code(tmp_path, monkeypatch) -> None:
+    known_cases(monkeypatch, "hayes/ratio", "cook")
+    ((says, limits),) = answers(verified(tmp_path / "v", "hayes/ratio/1", "cook", passed=False))["closed_forms"]
     assert says.startswith("1 of 2 values")
     assert limits == (AGAINST,)
+
+
+def test_families_that_were_not_verified_are_told(tmp_path, monkeypatch) -> None:
+    """Seven values of one family, none of the finite elements, had an answer to every question."""
+    known_cases(monkeypatch, "hayes/ratio_1", "hayes/ratio_2", "cook", "wave_hayes")
+    ((says, limits),) = answers(verified(tmp_path / "v", "hayes/ratio_1", "wave_hayes/far"))["closed_forms"]
+    assert says.endswith("of 1 of 3 families. Not run: hayes, cook.")
+    assert limits == (PARTIAL,)
+    every = verified(tmp_path / "all", "hayes/ratio_1", "hayes/ratio_2", "cook", "wave_hayes/far")
+    ((says, limits),) = answers(every)["closed_forms"]
+    assert says.endswith("of 3 of 3 families.")
+    assert limits == ()
 
 
 VALIDATION = """quantity,protocol,simulation,measure,value,unit
@@ -86,13 +110,16 @@ def test_conditions_without_a_replicate_are_not_judged(tmp_path) -> None:
     assert not any("deep" in says for says, _ in found["agreement"])
 
 
-def run_result(folder: Path, *, synthetic: bool = False, conditions: str = "", validation: str = VALIDATION) -> Path:
+def run_result(
+    folder: Path, *, synthetic: bool = False, conditions: str = "", validation: str = VALIDATION, status: str = "good"
+) -> Path:
     layer = {"percent_error_max": 0.2, "equivalent": True}
     document = {
         "schema": 1, "name": "skin", "complete": True, "equivalence_margin": 0.02,
         "models": {"fem": {"name": "FEM", "failure": None}, "wave": {"name": "wave model", "failure": None}},
         "comparison": {"dermis": layer, "fat": {**layer, "percent_error_max": 0.7}},
         "trials": {"session": "day", "synthetic": synthetic, "count": 4},
+        "verdict": {"status": status, "headline": "Equivalent, but the profile is off by 60 %."},
     }  # fmt: skip
     more = {"tables/validation_conditions.csv": conditions} if conditions else {}
     return result(folder, {"results.json": document, "tables/validation.csv": validation, **more})
@@ -105,6 +132,23 @@ def test_a_run_tells_its_own_error_and_that_of_its_prediction(tmp_path) -> None:
     assert "9 u_val" in found["agreement"][1][0]
     assert len(found["unseen"]) == 1
     assert "0.7 % (fat)" in found["second_model"][0][0]
+
+
+def test_what_the_page_of_a_run_has_against_its_models_stands_in_the_dossier(tmp_path) -> None:
+    """A profile 60 % off, not green on the page, was equivalent without a limit here."""
+    ((says, limits),) = answers(run_result(tmp_path / "good"))["second_model"]
+    assert "60 %" not in says
+    assert limits == ()
+    ((says, limits),) = answers(run_result(tmp_path / "but", status="finding"))["second_model"]
+    assert says.endswith("Equivalent, but the profile is off by 60 %.")
+    assert limits == (AGAINST,)
+    older = run_result(tmp_path / "older")
+    document = json.loads((older / "results.json").read_text())
+    del document["verdict"]
+    (older / "results.json").write_text(json.dumps(document))
+    ((says, limits),) = answers(older)["second_model"]
+    assert "make the result again" in says
+    assert limits == (PARTIAL,)
 
 
 def test_what_comes_of_synthetic_trials_is_marked(tmp_path) -> None:
@@ -172,14 +216,6 @@ def test_what_is_no_result_is_refused_by_name(tmp_path) -> None:
     (tmp_path / "fit.json").write_text('{"schema": 1}')
     with pytest.raises(InputError, match="make the result again"):
         evidence_of(read_result(tmp_path))
-
-
-def test_a_part_of_the_verification_is_no_answer_for_all(tmp_path) -> None:
-    cases = [{"case": "hertz/force", "source": "Hertz 1882", "passed": True}]
-    folder = result(tmp_path / "v", {"verification.json": {"schema": 1, "cases": cases}})
-    ((says, limits),) = answers(folder)["closed_forms"]
-    assert limits == (PARTIAL,)
-    assert "were not run: " in says
 
 
 def test_two_models_are_called_by_their_names(tmp_path) -> None:
