@@ -287,11 +287,11 @@ def _second_model(found: Mapping[str, Any], source: str) -> Iterator[Evidence]:
         f"{found['name']}: {wave} against {fem} within {plain_percent(worst['percent_error_max'])} ({what}); "
         f"{shown} {', '.join(compared)}."
     )
-    told = found.get("verdict")
+    told, limits = found.get("verdict"), tuple[str, ...]()
     if told is None:
         says, limits = f"{says} The verdict of its page is not in {source}: make the result again.", (PARTIAL,)
-    else:
-        says, limits = (says, ()) if told["status"] == "good" else (f"{says} {told['headline']}", (AGAINST,))
+    elif told["status"] != "good":
+        says, limits = f"{says} {told['headline']}", (AGAINST,)
     yield Evidence("second_model", says, source, limits if same else (AGAINST,))
 
 
