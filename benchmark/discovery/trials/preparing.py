@@ -70,9 +70,22 @@ def prepare(session: Session, rows: int) -> Study:
     conditions = tuple(
         _condition(session, group, grid, seen, np.array([order[r.trial.name] for r in group]), rows) for group in kept
     )
+    warnings += _scatter(raw)
     interval = float(np.median([np.median(np.diff(r.time)) for r in raw]))
     step = float(np.median([_step(r) for r in raw]))
     return Study(conditions, grid, camera.distance if camera else None, interval, step, tuple(warnings))
+
+
+def _scatter(raw: Sequence[RawTrial]) -> list[str]:
+    """That depths scatter and were made steady."""
+    steadied = [scatter_of(each.trial.table.depth) for each in raw if each.steadied]
+    if not steadied:
+        return []
+    size = f"{1e6 * np.median(steadied):.2g} um"
+    return [
+        f"the depth of {len(steadied)} of {len(raw)} trials scatters by {size} from row to row, which the force does not "
+        "follow: strokes and rests were smoothed"
+    ]
 
 
 def _step(raw: RawTrial) -> float:

@@ -1,5 +1,7 @@
 """Sessions that cannot be used are refused, and those of few trials name nothing."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -126,3 +128,5 @@ def test_a_depth_whose_sensor_scatters_is_prepared_steady(tmp_path, quick_sessio
     for made, known in zip(after.records, before.records, strict=True):
         assert 1e3 * np.std(made.depth - np.interp(made.time, known.time, known.depth)) < 0.01
     assert 1e3 * study.depth_step == pytest.approx(0.02, rel=0.2)
+    (said,) = set(study.warnings) - set(smooth.warnings)
+    assert re.match(r"the depth of 4 of 4 trials scatters by (19|20|21) um from row to row", said)
