@@ -47,6 +47,7 @@ a deep press; between these the whole force is within 0.2 % of that of a press o
 """
 TENSE_STEPS = 12
 """Load steps of their presses."""
+MESH = "fem.mesh"
 SECOND_TERMS = 2
 """Terms of the second order of a field, which is small."""
 
@@ -141,57 +142,77 @@ def with_choices(session: Session, setup: Setup, table: ElasticTable, keys: Sequ
 def _with_pretension(session: Session, setup: Setup, table: ElasticTable) -> ElasticTable:
     """The table of a sheet with what tensions before the press add, as far as the solver follows them as deep.
 
-    By the difference of presses, the others under tensions that make about the shares `TENSE` of the deepest force.
+    By the difference of presses on a coarse mesh, which is that of a finer one to 1 %: one without, the others under
+    tensions that make about the shares `TENSE` of the deepest force.
     """
     tissue, tool, support = setup
     if support.hole_radius is None or PRETENSION in session.settings:
         return table
+    coarse = replace(session, settings={MESH: "coarse", **session.settings})
+    ramp = _ramp_to(coarse, setup, table)
+    if ramp is None:
+        return table
+    plain = _on_grid(ramp, table)
     per_stress = 2.0 * np.pi * tissue.thickness * float(table.depth[-1]) / np.log(support.hole_radius / tool.radius)
     presses = {}
     for stress in np.array(TENSE) * float(table.force[-1]) / per_stress:
-        ramp = _tense_ramp(session, setup, stress, table)
-        if ramp is not None:
-            presses[float(stress)] = ramp
+        tense = _ramp_to(coarse, setup, table, stress)
+        if tense is not None:
+            presses[float(stress)] = tense
     if not presses:
         return table
     amounts = np.array(list(presses))
-    force = np.array([_force_over(ramp, table) for ramp in presses.values()]) - table.force
-    faces = [fields for stress, ramp in presses.items() if (fields := _fields_to(ramp, table, stress))]
+    force = np.array([_force_over(ramp, table) for ramp in presses.values()]) - plain.force
+    faces = [fields for stress, ramp in presses.items() if (fields := _fields_to(ramp, plain, stress))]
     outward, sink = (tuple(fields[side][0] for fields in faces) for side in (0, 1))
     middle = amounts.size // 2
-    powers = _powers(session, setup, table, float(amounts[middle]), force[middle])
+    powers = _powers(coarse, setup, plain, float(amounts[middle]), force[middle])
     return replace(table, added={PRETENSION: Addition(amounts, force / amounts[:, None], outward, sink, powers)})
 
 
-def _tense_ramp(session: Session, setup: Setup, stress: float, table: ElasticTable) -> Ramp | None:
+def _ramp_to(session: Session, setup: Setup, table: ElasticTable, stress: float = 0.0) -> Ramp | None:
     """A press of a sheet under a tension, Pa, as deep as a table; None where the solver does not follow it."""
-    tense = replace(session, settings={**session.settings, PRETENSION: f"{stress:.12g} Pa"})
+    tension = {PRETENSION: f"{stress:.12g} Pa"} if stress else {}
     deepest = float(table.depth[-1])
     try:
-        ramp = elastic_ramp(tense, *setup, deepest, TENSE_STEPS)
+        ramp = elastic_ramp(replace(session, settings={**session.settings, **tension}), *setup, deepest, TENSE_STEPS)
     except TissuebenchError:
         return None
     return ramp if ramp.depth[-1] >= deepest * (1.0 - 1e-9) else None
+
+
+def _on_grid(ramp: Ramp, table: ElasticTable) -> ElasticTable:
+    """A press on the depths and radii of a table, which changes with the set-up as that does."""
+    face, force = ramp.face, _force_over(ramp, table)
+    grown = np.divide(force, table.force, out=np.ones_like(force), where=table.force > 0.0)
+    by = {key: replace(each, force=grown * each.force) for key, each in table.by.items()}
+    if face is None or table.outward is None:
+        return replace(table, force=force, outward=None, sink=None, by=by)
+    outward, sink = (
+        SeparableField.of(ramp.depth, at_places(face, each, table.radius, ramp.depth), table.depth)
+        for each in (face.outward, face.sunk)
+    )
+    return replace(table, force=force, outward=outward, sink=sink, by=by)
 
 
 def _force_over(ramp: Ramp, table: ElasticTable) -> Array:
     return np.asarray(CubicSpline(ramp.depth, ramp.force)(table.depth))
 
 
-def _powers(session: Session, setup: Setup, table: ElasticTable, stress: float, more: Array) -> dict[str, Array]:
+def _powers(session: Session, setup: Setup, plain: ElasticTable, stress: float, more: Array) -> dict[str, Array]:
     """Powers (k,) of the set-up's lengths with which goes what a tension adds, (k,) N; of all thicknesses together.
 
-    By one more press under it with each length changed, less the table's force so changed.
+    By one more press under it with each length changed, less the force of the press without so changed.
     """
     layers = {f"{layer.name}.{THICKNESS}": layer.thickness / setup[0].thickness for layer in setup[0].layers}
     powers: dict[str, Array] = {}
     for key, parts in {RADIUS: {RADIUS: 1.0}, HOLE_RADIUS: {HOLE_RADIUS: 1.0}, THICKNESS: layers}.items():
-        if not set(parts) <= set(table.by):
+        if not set(parts) <= set(plain.by):
             continue
-        ramp = _tense_ramp(session, changed_setup(*setup, key, DIFFERENCE), stress, table)
+        ramp = _ramp_to(session, changed_setup(*setup, key, DIFFERENCE), plain, stress)
         if ramp is None:
             continue
-        there = _force_over(ramp, table) - table.force_with(dict.fromkeys(parts, DIFFERENCE))
+        there = _force_over(ramp, plain) - plain.force_with(dict.fromkeys(parts, DIFFERENCE))
         ratio = np.divide(there, more, out=np.ones_like(more), where=(more > 0.0) & (there > 0.0))
         powers |= {part: share * np.log(ratio) / np.log1p(DIFFERENCE) for part, share in parts.items()}
     return powers
