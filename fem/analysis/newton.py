@@ -22,7 +22,10 @@ from fem.arrays import FloatArray
 from fem.assembly.system import Evaluation
 from fem.linear_solver import SingularMatrixError
 
-MOST_ROUND_OFF = 1e3  # in tolerances: round-off beyond it is not accepted as equilibrium
+MOST_ROUND_OFF = 1e3
+"""In tolerances: more round-off is accepted as equilibrium only where corrections change nothing any more. A sheet much
+thinner than its hole bends under forces that are less than the round-off of those that stretch it, as a large body's
+far elements have more than what a tip meets, and both still have displacements and force to many digits."""
 FORCING, MOST_FORCING = 1e-3, 0.1
 """Shares of the unbalanced forces that an iterative solver may leave: at least, and where less is left to do (S. C.
 Eisenstat and H. F. Walker, SIAM Journal on Scientific Computing 17 (1996) 16). 1e-2 and 1e-4 took 1.1 to 1.3 times as
@@ -101,7 +104,8 @@ def solve_newton(
             round_off = None  # held factors that lead away: from the same state with new ones
             continue
         state, evaluation = moved
-        if unbalanced <= limit or _is_round_off(round_off, state, unbalanced, limit):
+        most = np.inf if _is_settled(moved[0], step, tolerance) else MOST_ROUND_OFF * limit
+        if unbalanced <= limit or _is_round_off(round_off, state, unbalanced, most):
             if control == "force" or _reached(problem, state, target):
                 return NewtonResult(_found(state, evaluation), iteration, round_off=round_off)
         elif unbalanced > settings.divergence * best:
@@ -122,11 +126,15 @@ def _unbalanced(problem: Equilibrium, state: State, evaluation: Evaluation) -> f
     return float(np.linalg.norm(evaluation.residual - state.force * problem.unit_load))
 
 
-def _is_round_off(round_off: Callable[[FloatArray], float], state: State, unbalanced: float, limit: float) -> bool:
-    """Whether what is left is no more than round-off, as with very flat elements far away."""
-    if unbalanced > MOST_ROUND_OFF * limit:
-        return False
-    return unbalanced <= round_off(state.y)
+def _is_round_off(round_off: Callable[[FloatArray], float], state: State, unbalanced: float, most: float) -> bool:
+    """Whether what is left, `most` N or less, is no more than round-off, as with very flat elements far away."""
+    return unbalanced <= most and unbalanced <= round_off(state.y)
+
+
+def _is_settled(state: State, step: tuple[FloatArray, float], tolerance: float) -> bool:
+    """Whether the correction that led to a state changed displacements and force by no more than a share of them."""
+    dy, df = step
+    return bool(np.linalg.norm(dy) <= tolerance * np.linalg.norm(state.y)) and abs(df) <= tolerance * abs(state.force)
 
 
 def _reached(problem: Equilibrium, state: State, target: float) -> bool:

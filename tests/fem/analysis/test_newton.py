@@ -5,7 +5,7 @@ import pytest
 
 import fem
 from fem.analysis.equilibrium import State
-from fem.analysis.newton import FORCING, MOST_FORCING, NewtonSettings, solve_newton
+from fem.analysis.newton import FORCING, MOST_FORCING, MOST_ROUND_OFF, NewtonSettings, solve_newton
 from fem.linear_solver import IterativeSolver
 from tests.fem.linear_solver.test_iterative import block
 
@@ -53,6 +53,19 @@ def test_a_guess_inside_out_is_a_reason(problem):
     state = rest(problem)
     bad = State(state.y - 1.0, state.pressure, 0.0)
     assert "inside out" in solve_newton(problem, bad, "force", 1.0, 0.0, SETTINGS).reason
+
+
+def test_round_off_above_the_forces_of_a_thin_sheet_is_equilibrium_where_nothing_changes_any_more():
+    """0.002 of its hole's radius thick, it bends under less than the round-off of what stretches it."""
+    sheet, hole = fem.Layer("sheet", 0.04e-3, 1e3, fem.NeoHookean(500e3, 0.3)), fem.Support("hole", 20e-3, clamp="rim")
+    thin = fem.prepare(fem.Problem((sheet,), fem.Tool(2e-3, "rigid_bonded"), hole)).equilibrium
+    found = solve_newton(thin, rest(thin), "depth", 0.15e-3, 0.0, SETTINGS)
+    assert found.success
+    assert found.iterations < 10
+    left = thin.system.evaluate(found.state.y, found.state.pressure).residual - found.state.force * thin.unit_load
+    assert np.linalg.norm(left) > MOST_ROUND_OFF * SETTINGS.tolerance * found.state.force
+    again = solve_newton(thin, found.state, "depth", 0.15e-3, 0.0, SETTINGS)
+    assert again.state.force == pytest.approx(found.state.force, rel=1e-10)
 
 
 class Counting:

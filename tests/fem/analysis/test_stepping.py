@@ -81,6 +81,22 @@ def test_a_sphere_meets_soft_tissue_by_its_force_as_by_its_depth(contact, fricti
     assert lowered.force[-1] == pytest.approx(0.15, rel=1e-6 if friction is None else 1e-2)
 
 
+def test_a_sphere_meets_a_half_space_that_hardly_changes_its_volume_on_the_fine_mesh():
+    """Its far elements have more round-off than what the tip meets: it once did not start."""
+    gel, tool = (
+        fem.Layer("gel", 10e-3, 1000.0, fem.NeoHookean(20e3, 0.4999)),
+        fem.Tool(5e-3, "rigid_frictionless", 5e-3),
+    )
+    forces = {}
+    for density in ("default", "fine"):
+        mesh = fem.Discretisation(density)
+        model = fem.prepare(fem.Problem((gel,), tool, fem.Support("half_space"), discretisation=mesh))
+        pressed = model.run(fem.Load("depth", np.array([1.0]), np.array([0.25e-3])))
+        assert pressed.complete
+        forces[density] = pressed.force[-1]
+    assert forces["fine"] == pytest.approx(forces["default"], rel=2e-3)
+
+
 def gel_with_friction():
     gel = (fem.Layer("gel", 6e-3, 1000.0, fem.NeoHookean(50e3, 0.48)),)
     tool = fem.Tool(5e-3, "rigid_frictional", 1e-3, friction_coefficient=0.3)
