@@ -15,6 +15,7 @@ import numpy as np
 
 from fem.analysis.equilibrium import Equilibrium, NewtonResult, State
 from fem.analysis.newton import NewtonSettings, solve_newton
+from fem.analysis.prediction import along_tangent
 from fem.arrays import FloatArray, IntArray
 from fem.assembly.item import EquationItem, ItemForces
 from fem.assembly.system import System
@@ -25,12 +26,17 @@ LEAST_GAIN = 1e-5
 """Of the tool's work, above which energy is taken for gained and not for unbalanced by a tolerance."""
 GIVES_WAY = "the tissue gives way"
 NONE_NEAR = "no stable equilibrium is near: the tissue folds or gives way"
+TOO_FAR = "the next equilibrium lies too far off for a step"
 BENT, LEAST_BENT, MORE_BENT = 0.3, 1e-3, 3.0
 """Energy unbalanced on the straight way between two states, over the work, above which one does not follow the other:
 times the square of the step over the load, at least the second. Steps of a half to three quarters of the load, to 0.3
 of a skin, have 0.2 times that square and less, sheets that stretch, whose force goes with the cube, once: where the way
 from rest has so much, as many times that are let through. Jumps, whose step may be as short as one likes, have 0.008
 and more."""
+LOST = 0.75
+"""Of the way from the last state, by which a prediction misses one to which the body has jumped: a jump stays as long
+as it is however short the step, the way on does not. Steps that are followed miss by 0.3 and less; where a gel folds at
+the edge of a pressure, jumps by 0.8 and more, and what lies behind them is as uncertain as what nothing holds."""
 FIRST_DURATION = 1e-4
 """Of a creeping body's first step, in its own time (:func:`slowed`)."""
 MOST_CREEP = 100  # steps
@@ -120,6 +126,33 @@ def is_unstable(problem: Equilibrium, state: State, control: Literal["force", "d
         sinking = problem.depth(problem.solve(problem.unit_load[:, None], 0.0)[:, 0])
         negative -= sinking < 0.0
     return negative > 0
+
+
+def has_jumped(
+    problem: Equilibrium, start: State, end: State, guess: State, control: Literal["force", "depth"], step: float
+) -> bool:
+    """Whether a state lies elsewhere than on the way on from the last one, in a body without a memory.
+
+    Both a prediction and the tangent at the last state miss it. A prediction by the states before alone may miss the
+    way on, too, however short the step: behind a first step of a thin sheet, whose force goes with the cube of its
+    depth, the way on is a third of theirs.
+
+    Parameters
+    ----------
+    problem
+        The equations; the solver has other factors afterwards where the prediction misses.
+    start, end
+        The last equilibrium, and the one that may lie elsewhere.
+    guess
+        The prediction of the second.
+    control, step
+        What is prescribed, and how much more of it, in N or m.
+    """
+    allowed = LOST * np.linalg.norm(end.y - start.y)
+    if np.linalg.norm(end.y - guess.y) <= allowed:
+        return False
+    onwards = along_tangent(problem, start, control, step)
+    return onwards is None or bool(np.linalg.norm(end.y - onwards.y) > allowed)
 
 
 def unbalanced_between(problem: Equilibrium, start: State, end: State) -> float:

@@ -8,6 +8,9 @@ still corrected by Newton like any other.
 Over time, for a body with a memory, whose states of the way up say nothing about the way back: while the load goes on
 at one rate the last three states are extrapolated; after a change of rate the last increment is scaled with the load.
 
+By the tangent at the last state, to judge by: right to first order where a few states are not, as behind the first
+step of a thin sheet. It takes new factors.
+
 From another mesh of the same body: its displacements at these nodes. Round a sharp edge they may turn a larger element
 inside out, which then gets straight sides. Along a history the other mesh's increment is added to the last state.
 """
@@ -15,11 +18,13 @@ inside out, which then gets straight sides. Along a history the other mesh's inc
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Literal
 
 import numpy as np
 
 from fem.analysis.equilibrium import Equilibrium, State
 from fem.arrays import FloatArray, IntArray
+from fem.linear_solver import SingularMatrixError
 from fem.mesh.quads import Mesh
 
 LOWEST_ORDER, HIGHEST_ORDER = 2, 5  # as far as there are states
@@ -89,6 +94,24 @@ def extrapolated(points: FloatArray, states: list[State], at: float) -> State:
     while order < len(sizes) and sizes[order] <= SHRINKAGE * sizes[order - 1]:
         order += 1
     return combined(weights[order, : order + 1], states[: order + 1])
+
+
+def along_tangent(problem: Equilibrium, state: State, control: Literal["force", "depth"], step: float) -> State | None:
+    """Prediction by the tangent at an equilibrium, for so much more force (N) or depth (m); None where it has none."""
+    evaluation = problem.system.evaluate(state.y, state.pressure)
+    if evaluation is None:
+        return None
+    try:
+        problem.factorise(evaluation)
+        slope = problem.solve(problem.unit_load[:, None], 0.0)[:, 0]
+    except SingularMatrixError:
+        return None
+    share = 1.0 if control == "force" else problem.depth(slope)
+    if share == 0.0:
+        return None
+    force = step / share
+    dy = force * slope
+    return State(state.y + dy, problem.system.pressure_after(evaluation, dy), state.force + force)
 
 
 def combined(weights: FloatArray, states: list[State]) -> State:

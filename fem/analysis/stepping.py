@@ -16,8 +16,10 @@ from fem.analysis.limit_points import (
     LEAST_BENT,
     MORE_BENT,
     NONE_NEAR,
+    TOO_FAR,
     Account,
     creep,
+    has_jumped,
     is_unstable,
     unbalanced_between,
 )
@@ -39,10 +41,6 @@ HELD_BELOW = 2e-3
 MOST_OVER = 30  # limit points in a press; five were the most that was seen
 MISSED = 0.2
 """Of the way from the last state, by which a prediction misses one that may lie on another branch."""
-LOST = 0.75
-"""Likewise, by which the body has jumped to another: a jump stays as long as it is however short the step, the way on
-does not. Steps that are followed miss by 0.3 and less; where a gel folds at the edge of a pressure, jumps by 0.8 and
-more, and what lies behind them is as uncertain as what nothing holds."""
 CROSSED = 0.005
 """Of the load, the longest step from a stable state to an unstable one."""
 AHEAD = (1.0 / 64.0, 1.0 / 8.0)
@@ -340,15 +338,16 @@ class Stepper:
             return replace(result, unstable=self._unstable)
         problem, state = replace(self._problem, system=system), result.state
         missed, way = np.linalg.norm(state.y - guess.y), np.linalg.norm(state.y - self._state.y)
-        begun = len(self._times) > 1
-        unstable = is_unstable(problem, state, self._control) or bool(begun and missed > LOST * way)
-        step, most = abs(value - self._value), max(abs(value), abs(self._value))
-        if unstable and not self._unstable and step > max(CROSSED * most, self._finest):
+        begun, further = len(self._times) > 1, value - self._value
+        unstable = is_unstable(problem, state, self._control)
+        unstable |= begun and has_jumped(problem, self._state, state, guess, self._control, further)
+        longest = max(CROSSED * max(abs(value), abs(self._value)), self._finest)
+        if unstable and not self._unstable and abs(further) > longest:
             return replace(result, reason=NONE_NEAR)
         if unstable or missed > MISSED * way:
             off, square = self._strayed(system, state, value)
             if begun and not off <= max(LEAST_BENT, self._bent * square):
-                return replace(result, reason=NONE_NEAR)
+                return replace(result, reason=NONE_NEAR if unstable else TOO_FAR)
             self._bend(off, square)
         return replace(result, unstable=unstable)
 

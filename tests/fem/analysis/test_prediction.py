@@ -5,8 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import fem
 from fem.analysis.equilibrium import State
-from fem.analysis.prediction import HIGHEST_ORDER, LOWEST_ORDER, GuidedStates, KnownStates
+from fem.analysis.newton import NewtonSettings
+from fem.analysis.prediction import HIGHEST_ORDER, LOWEST_ORDER, GuidedStates, KnownStates, along_tangent
+from fem.analysis.stepping import Stepper
 
 
 def quadratic(v):
@@ -96,3 +99,16 @@ def test_a_sudden_press_is_predicted_by_the_last_state():
     np.testing.assert_array_equal(next(known.predictions(4.0, 0.0)).y[:2], [0.0, 0.0])
     known.add(4.0, 0.0, State(np.array([2.0, -1.0, 1.0]), np.zeros((1, 1)), 4.0))
     np.testing.assert_allclose(next(known.predictions(5.0, 1.0)).y, [3.0, -1.0, 1.25])
+
+
+def test_the_tangent_foretells_a_short_step_to_second_order(skin):
+    problem = fem.prepare(skin("uniform_pressure", discretisation=fem.Discretisation("coarse"))).equilibrium
+    stepper, off = Stepper(problem, "force", 5e-3, NewtonSettings()), []
+    states = [stepper.advance(force).state for force in (1.0, 1.02, 1.04)]
+    for then in states[1:]:
+        guess = along_tangent(problem, states[0], "force", then.force - 1.0)
+        by_depth = along_tangent(problem, states[0], "depth", problem.depth(then.y) - problem.depth(states[0].y))
+        assert guess.force == pytest.approx(then.force)
+        assert problem.depth(by_depth.y) == pytest.approx(problem.depth(then.y))
+        off.append([np.linalg.norm(one.y - then.y) for one in (guess, by_depth)])
+    np.testing.assert_allclose(np.array(off[1]) / off[0], 4.0, rtol=0.1)
