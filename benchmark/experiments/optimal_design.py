@@ -19,13 +19,13 @@ import numpy as np
 from benchmark.errors import InputError, SolverError
 from benchmark.experiments.menu import Experiment, Usual, menu, minutes, motion, protocol_toml, same_again
 from benchmark.files import Tool
+from benchmark.identification.model_error import COUNT
 from benchmark.identification.parameters.fit_problem import FitProblem
 from benchmark.identification.parameters.identifiability import LARGEST_ERROR
 from benchmark.identification.parameters.identified import Identified
 from benchmark.identification.parameters.layer_fit import LOOKED_UP
 from benchmark.identification.parameters.layer_model import MM, Fading, FitTrial, LayerModel
 from benchmark.identification.parameters.pressed_set_ups import press_all
-from benchmark.identification.parameters.presses.model_error import COUNT
 from benchmark.identification.parameters.presses.press_surrogate import Press, PressSurrogate, StopsError
 from benchmark.identification.trial_data import TrialData
 from benchmark.identification.trial_features import ContactRange

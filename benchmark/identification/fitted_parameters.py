@@ -13,7 +13,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from benchmark.identification.pooling import PooledStiffness, counted_trials, mean_interval
+from benchmark.identification.pooling import PooledStiffness, counted_trials, mean_interval, shared
 from benchmark.identification.sheet_session import Pooled, SheetFit, pool_values
 from benchmark.identification.sheet_trial import SheetTrial
 from benchmark.identification.trial_fit import TrialFit
@@ -117,8 +117,11 @@ def fitted_parameters(
     for layer in layers:
         rows += [_modulus(layer, pooled, len(layers)), *_fixed(layer)]
     bound = sum(trial.onset_at_bound for trial in trials)
-    onset = _summary("contact_onset", "mm", [1e3 * t.onset for t in trials], 1e3 * trials[0].onset_stderr)
-    zero = _summary("force_zero", "N", [t.zero for t in trials], trials[0].zero_stderr)
+    _, zeros, onsets = zip(*(trial.of_curve for trial in trials), strict=True)
+    onset = _summary(
+        "contact_onset", "mm", [1e3 * t.onset for t in trials], 1e3 * trials[0].onset_stderr, 1e3 * shared(onsets)
+    )
+    zero = _summary("force_zero", "N", [t.zero for t in trials], trials[0].zero_stderr, shared(zeros))
     if 2 * bound > len(trials):
         onset = onset.unidentified(f"; {bound} of {len(trials)} lie at an end of the range the data allow")
     return (*rows, onset, zero)
@@ -152,12 +155,13 @@ def _fixed(layer: LayerLike) -> list[FittedParameter]:
     ]
 
 
-def _summary(name: str, unit: str, values: list[float], stderr: float) -> FittedParameter:
-    """Mean over trials with its t interval; a single trial has 1.96 of its own standard errors."""
+def _summary(name: str, unit: str, values: list[float], stderr: float, alike: float) -> FittedParameter:
+    """Mean over trials with its t interval and what is `alike` in all; a single trial has 1.96 of its own errors."""
     if len(values) == 1:
         half, mean, source = 1.96 * stderr, values[0], "of the single trial, from its own residual"
     else:
-        mean, half, _ = mean_interval(values)
+        mean, scattered, _ = mean_interval(values)
+        half = math.hypot(scattered, alike)
         source = f"mean over {len(values)} trials of each trial's own value"
     return FittedParameter(name, mean, unit, mean - half, mean + half, True, source)
 

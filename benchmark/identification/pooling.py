@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import scipy
 
-from benchmark.identification.elastic_law import NAMES, inside, law_derivatives, law_force
+from benchmark.identification.elastic_law import NAMES, Weights, inside, law_derivatives, law_force, weights_of
 from benchmark.identification.trial_data import FittingError, TrialData, reduced
 from benchmark.identification.trial_features import ContactRange
 from benchmark.identification.trial_fit import TrialFit
@@ -20,6 +20,7 @@ from benchmark.response.least_squares import EXACT, least_squares
 from benchmark.response.trials_model import TrialColumns, TrialsEvaluation
 
 BETWEEN_TRIALS = "t interval of the mean logarithm, the trial as the unit"
+OF_CURVE = ", and {share:.2g} % by the model's own error over depth, alike in all"
 LEAST_FREEDOM = 2.0
 """Degrees of freedom of a single trial count as no fewer."""
 NORMAL_95 = 1.96
@@ -70,8 +71,9 @@ class PooledStiffness:
 def pool(trials: Sequence[TrialFit]) -> PooledStiffness:
     """Pool the trials' stiffness factors by the mean of their logarithms.
 
-    A single trial has the interval of its own fit; effective rows less three parameters, but at least
-    two, are its degrees of freedom.
+    What the curve's own error leaves is alike in all trials, and in no scatter of theirs: it is in the interval beside
+    that, by squares of half-widths. A single trial has the interval of its own fit; effective rows less three
+    parameters, but at least two, are its degrees of freedom.
 
     Raises
     ------
@@ -83,8 +85,9 @@ def pool(trials: Sequence[TrialFit]) -> PooledStiffness:
     if len(trials) == 1:
         return _single(trials[0])
     logs = np.array([trial.log_stiffness for trial in trials])
-    mean, half, std = mean_interval(logs)
-    ahead = half * math.sqrt(len(logs) + 1)
+    mean, scattered, std = mean_interval(logs)
+    share = shared([trial.of_curve[0] for trial in trials])
+    half, ahead = math.hypot(scattered, share), math.hypot(scattered * math.sqrt(len(logs) + 1), share)
     return PooledStiffness(
         math.exp(mean),
         math.exp(mean - half),
@@ -92,8 +95,13 @@ def pool(trials: Sequence[TrialFit]) -> PooledStiffness:
         std,
         (math.exp(mean - ahead), math.exp(mean + ahead)),
         len(logs),
-        BETWEEN_TRIALS,
+        f"{BETWEEN_TRIALS}{OF_CURVE.format(share=100.0 * share) if share else ''}",
     )
+
+
+def shared(deviations: Sequence[float]) -> float:
+    """Half-width of a 95 % interval by what has these standard deviations and is alike in all trials."""
+    return NORMAL_95 * math.fsum(deviations) / len(deviations)
 
 
 def widened(found: PooledStiffness, shares: Mapping[str, float]) -> PooledStiffness:
@@ -117,7 +125,7 @@ def widened(found: PooledStiffness, shares: Mapping[str, float]) -> PooledStiffn
         ci95_low=found.value / low,
         ci95_high=found.value * high,
         next_trial=None,
-        method=f"the trials' scatter, and standard uncertainties of the set-up as told: {by}",
+        method=f"the trials' scatter, the model's own error, and standard uncertainties of the set-up as told: {by}",
     )
 
 
@@ -206,7 +214,8 @@ def fit_jointly(trials: Triples, pooled: PooledStiffness) -> JointFit:
         Start and interval to compare with.
     """
     most = max(50, TOTAL_ROWS // len(trials))
-    model = _CommonStiffness(tuple((reduced(trial, most), allowed, fit) for trial, allowed, fit in trials))
+    rows = tuple((reduced(trial, most), allowed, fit) for trial, allowed, fit in trials)
+    model = _CommonStiffness(rows, tuple(_weights(trial, fit) for trial, _, fit in rows))
     own = np.clip([[fit.rest, fit.onset] for _, _, fit in trials], *inside(*model.trial_bounds))
     fitted = least_squares(model, np.array([math.log(pooled.value)]), own, search=EXACT)
     value = math.exp(fitted.vector[0])
@@ -221,6 +230,7 @@ class _CommonStiffness:
     """
 
     trials: tuple[tuple[TrialData, ContactRange, TrialFit], ...]
+    weights: tuple[Weights, ...]
 
     @property
     def bounds(self) -> tuple[Array, Array]:
@@ -249,16 +259,16 @@ class _CommonStiffness:
     def evaluated(self, vector: Array, nuisance: Array) -> TrialsEvaluation:
         """Weighted residuals of all trials."""
         residuals = [
-            _weight(trial, fit) * (trial.force - law_force(trial, allowed, vector[0], *own))
-            for (trial, allowed, fit), own in zip(self.trials, nuisance, strict=True)
+            _weight(trial, fit) * weights.white(trial.force - law_force(trial, allowed, vector[0], *own))
+            for (trial, allowed, fit), own, weights in zip(self.trials, nuisance, self.weights, strict=True)
         ]
         return TrialsEvaluation(vector, nuisance, [], residuals)
 
     def columns(self, at: TrialsEvaluation, warm: TrialColumns | None = None) -> TrialColumns:  # noqa: ARG002
         """By the stiffness, and by rest force and onset."""
         each = [
-            _weight(trial, fit) * law_derivatives(trial, allowed, at.vector[0], own[1])
-            for (trial, allowed, fit), own in zip(self.trials, at.nuisance, strict=True)
+            _weight(trial, fit) * weights.white(law_derivatives(trial, allowed, at.vector[0], own[1]))
+            for (trial, allowed, fit), own, weights in zip(self.trials, at.nuisance, self.weights, strict=True)
         ]
         return TrialColumns([one[:, :1] for one in each], [one[:, 1:] for one in each])
 
@@ -269,6 +279,12 @@ class _CommonStiffness:
 
 def _weight(trial: TrialData, fit: TrialFit) -> float:
     return 1.0 / (fit.peak * math.sqrt(trial.rows))
+
+
+def _weights(trial: TrialData, fit: TrialFit) -> Weights:
+    """Those of the trial's own fit, for as few rows as are left."""
+    noise = fit.row_noise * math.sqrt(trial.rows / fit.rows_fitted)
+    return weights_of(trial, np.array([fit.log_stiffness, fit.rest, fit.onset]), noise)
 
 
 def counted_trials(number: int) -> str:

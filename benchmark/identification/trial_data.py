@@ -14,6 +14,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmark.identification.model_error import ModelError
 from benchmark.response.force_curve import Array, ForceCurve, ResponseError
 
 LEAST_ROWS = 20
@@ -48,6 +49,8 @@ class TrialData:
         s increasing, m press positive (zero near first contact), N press positive; n >= 20.
     curve : ForceCurve
         Force of the specimen at stiffness factor 1.
+    error : ModelError or None
+        How the curve may be wrong by itself; None where it is taken as exact.
 
     Raises
     ------
@@ -61,6 +64,7 @@ class TrialData:
     depth: Array
     force: Array
     curve: ForceCurve
+    error: ModelError | None = None
 
     def __post_init__(self) -> None:
         for channel in ("time", "depth", "force"):

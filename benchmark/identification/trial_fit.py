@@ -66,6 +66,11 @@ class TrialFit:
     correlations : mapping
         Between the fitted parameters, by "a, b".
     notes : tuple of str
+    of_curve : (float, float, float)
+        Standard deviations that the curve's own error, alike in all trials, leaves of log stiffness, zero and onset (N,
+        m); within the standard errors.
+    row_noise : float
+        Standard deviation of a fitted row, widened for autocorrelation, N; by it and that error rows were weighted.
     """
 
     name: str
@@ -89,6 +94,8 @@ class TrialFit:
     contact_from_loading: bool
     correlations: Mapping[str, float]
     notes: tuple[str, ...]
+    of_curve: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    row_noise: float = 0.0
 
     @property
     def key(self) -> tuple[str, str]:
@@ -253,6 +260,8 @@ def _result(
         contact_from_loading=contact is not whole,
         correlations=contact.correlations,
         notes=tuple(notes),
+        row_noise=whole.row_noise,
+        of_curve=(max(whole.of_curve[0], contact.of_curve[0]), *contact.of_curve[1:]),
     )
     if found.onset_at_bound:
         return replace(found, notes=(*notes, "the contact onset is at an end of the range the data allow"))

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmark.errors import InputError
-from benchmark.files import Session, Setup, Trial, load_session
+from benchmark.files import Session, Setup, Tool, Trial, load_session
 from benchmark.identification import (
     FittingError,
     SessionFit,
@@ -21,6 +21,7 @@ from benchmark.identification import (
 )
 from benchmark.identification.effects_in_fit import fit_with_effects
 from benchmark.identification.fitted_parameters import sheet_parameters
+from benchmark.identification.model_error import jumps, model_error
 from benchmark.identification.session_fit import elastic_only
 from benchmark.identification.sheet_model import NONE, FilmedTrial
 from benchmark.identification.sheet_trial import SheetTrial
@@ -113,7 +114,9 @@ def fit_trials(
     base = base_curves(session, _depths(session), listener)
     listener.say(f"{session.name}: fitting {counted(len(session.trials), 'trial')}")
     try:
-        trials = tuple(_trial_data(trial, base.curves[session.setup(trial)]) for trial in session.trials)
+        setups = [session.setup(trial) for trial in session.trials]
+        pairs = zip(session.trials, setups, strict=True)
+        trials = tuple(_trial_data(trial, setup[1], base.curves[setup]) for trial, setup in pairs)
         if repair is not None:
             return _fitted_with(repair, session, trials, base)
         fit = fit_session(trials, session.specimen.layers)
@@ -188,6 +191,7 @@ def _depths(session: Session) -> dict[Setup, float]:
     return depths
 
 
-def _trial_data(trial: Trial, curve: ForceCurve) -> TrialData:
+def _trial_data(trial: Trial, tool: Tool, curve: ForceCurve) -> TrialData:
     table = trial.table
-    return TrialData(trial.name, trial.condition, table.time, table.depth, table.force, curve)
+    error = model_error(None, jumping=jumps(tool))  # of the mesh nothing is estimated, and nothing taken off
+    return TrialData(trial.name, trial.condition, table.time, table.depth, table.force, curve, error)

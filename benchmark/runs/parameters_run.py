@@ -26,6 +26,7 @@ from benchmark.identification.parameters.layer_fit import SEARCH, LayerFit, begu
 from benchmark.identification.parameters.other_answers import other_answers
 from benchmark.identification.parameters.posterior import posterior
 from benchmark.identification.parameters.pressed_set_ups import followed
+from benchmark.identification.parameters.presses.press_surrogate import PressSurrogate
 from benchmark.identification.parameters.session_problem import (
     Assembled,
     FittedBase,
@@ -34,6 +35,9 @@ from benchmark.identification.parameters.session_problem import (
     check_wish,
 )
 from benchmark.identification.pooling import widened
+from benchmark.identification.trial_data import TrialData
+from benchmark.identification.trial_fit import fit_trial
+from benchmark.response.force_curve import ForceCurve
 from benchmark.response.least_squares import least_squares
 from benchmark.response.ramp_table import EVERYWHERE
 from benchmark.runs.fitted_session import FittedSession
@@ -45,6 +49,9 @@ BETTER = 6.0
 
 Beyond the 0.99 quantile of chi squared with one degree of freedom (6.6) for one parameter, more than that for several.
 """
+
+MOVE = 0.01
+"""By which a coordinate of the set-up is moved to see what it does to a stiffness."""
 
 
 @dataclass(frozen=True)
@@ -241,8 +248,8 @@ def with_setup(found: FittedSession, exact: tuple[str, ...], listener: Listener)
     """The fit of one stiffness to force, with the interval that the uncertainty of the set-up as told leaves of it.
 
     Told are the tool's radius and edge, and each layer's thickness and Poisson's ratio, each with its stated or a usual
-    uncertainty where it is not `exact`. By linear propagation (JCGM 100:2008, 5.1.2): a force that is larger by a share
-    at the same depth makes the stiffness less by that share, over the press by least squares.
+    uncertainty where it is not `exact`. By linear propagation (JCGM 100:2008, 5.1.2): each trial is fitted again with
+    the force moved by its derivative.
     """
     session = found.session
     if found.filmed is not None and found.filmed.sheet is not None:
@@ -256,17 +263,29 @@ def with_setup(found: FittedSession, exact: tuple[str, ...], listener: Listener)
     except (InputError, SolverError) as error:
         said = f"how far the set-up as told may move the stiffness was not worked out: {error}"
         return replace(found, warnings=(*found.warnings, said))
-    moved = np.array([one.by @ one.force**2 / (one.force @ one.force) for one in presses])
-    moved = moved[[trial.press for trial in made.problem.trials]].mean(axis=0)
+    told = {trial.key: trial for trial in found.trials}
+    pairs = [(told[trial.data.key], presses[trial.press]) for trial in made.problem.trials]
     shares: dict[str, float] = {}
-    for one, share in zip(made.problem.parameters, moved, strict=False):  # the model's own errors follow
+    for number, one in enumerate(made.problem.parameters):
         if one.told and one.prior is not None:
-            shares[one.key] = math.hypot(shares.get(one.key, 0.0), share * one.prior.deviation)
+            moved = [_moved(found, trial, press, number) for trial, press in pairs]
+            share = one.prior.deviation * math.fsum(moved) / len(moved)
+            shares[one.key] = math.hypot(shares.get(one.key, 0.0), share)
     if not shares:
         return found
     wide = widened(found.fit.stiffness, shares)
     notes = (*found.fit.notes, f"the wider interval has {wide.method}")
     return replace(found, fit=replace(found.fit, with_setup=wide, notes=notes))
+
+
+def _moved(found: FittedSession, trial: TrialData, press: PressSurrogate, number: int) -> float:
+    """By how much the logarithm of a trial's stiffness goes down for a coordinate of its press, by its number."""
+    if not press.by[number].any():
+        return 0.0
+    curve = trial.curve
+    force = curve.force * np.exp(MOVE * np.interp(curve.depth, press.depth, press.by[number]))
+    moved = fit_trial(replace(trial, curve=ForceCurve(curve.depth, np.maximum.accumulate(force))))
+    return (found.fit.trial(trial.name, trial.condition).log_stiffness - moved.log_stiffness) / MOVE
 
 
 def _misfit(common: LayerFit, free: LayerFit) -> float:

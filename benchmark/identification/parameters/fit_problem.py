@@ -8,10 +8,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmark.identification.model_error import COUNT, ModelError, jumps, model_error, touches
 from benchmark.identification.parameters.free_parameters import COMMON, RELAXATION, SHARE, Parameter, start_vector
 from benchmark.identification.parameters.layer_model import Fading, FitTrial
 from benchmark.identification.parameters.presses.marker_rings import TRUST
-from benchmark.identification.parameters.presses.model_error import COUNT, ModelError, jumps, model_error, touches
 from benchmark.identification.parameters.presses.press_surrogate import Forward, Press
 from benchmark.response.force_curve import Array
 

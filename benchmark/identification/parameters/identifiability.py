@@ -18,10 +18,10 @@ from typing import Any
 
 import numpy as np
 
+from benchmark.identification.model_error import COUNT, PLAIN, functions
 from benchmark.identification.parameters.layer_fit import LayerFit
 from benchmark.identification.parameters.layer_model import MM, LayerModel
 from benchmark.identification.parameters.mixed_effects import course_left
-from benchmark.identification.parameters.presses.model_error import COUNT, PLAIN, functions
 from benchmark.identification.parameters.presses.press_surrogate import GRID
 from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import TrialsFit, scaled_inverse

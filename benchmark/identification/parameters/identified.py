@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from benchmark.identification.fitted_parameters import FittedParameter
+from benchmark.identification.model_error import ModelError
 from benchmark.identification.parameters.free_parameters import Parameter, Prior
 from benchmark.identification.parameters.held_out import HeldOut, contradiction, held_out
 from benchmark.identification.parameters.identifiability import (
@@ -30,7 +31,6 @@ from benchmark.identification.parameters.identifiability import (
 from benchmark.identification.parameters.layer_fit import LayerFit
 from benchmark.identification.parameters.layer_model import MM
 from benchmark.identification.parameters.presses.marker_rings import TRUST
-from benchmark.identification.parameters.presses.model_error import ModelError
 from benchmark.identification.parameters.presses.press_surrogate import Press
 from benchmark.identification.parameters.profile_likelihood import Profile, largest_errors, verified_profiles
 from benchmark.identification.pooling import counted_trials

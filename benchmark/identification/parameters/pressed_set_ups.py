@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from benchmark.errors import SolverError
+from benchmark.identification.model_error import COUNT, functions, taken
 from benchmark.identification.parameters.fit_problem import FitProblem, relaxing_layers
 from benchmark.identification.parameters.layer_model import ForceTable
-from benchmark.identification.parameters.presses.model_error import COUNT, functions, taken
 from benchmark.identification.parameters.presses.press_atlas import PressAtlas
 from benchmark.identification.parameters.presses.press_surrogate import PressSurrogate, StopsError, surrogate
 from benchmark.response.force_curve import Array

@@ -15,6 +15,7 @@ from benchmark.files.schema import nearest
 from benchmark.files.sessions.fit_table import FitTable
 from benchmark.files.tool import TOUCHING
 from benchmark.files.units import QuantityError, parse_quantity, relative_uncertainty, split_uncertainty
+from benchmark.identification.model_error import LARGEST
 from benchmark.identification.parameters.fit_problem import FitProblem
 from benchmark.identification.parameters.free_parameters import (
     COMMON,
@@ -32,7 +33,6 @@ from benchmark.identification.parameters.free_parameters import (
 from benchmark.identification.parameters.law_shapes import POWER, law_shape
 from benchmark.identification.parameters.layer_model import FitTrial
 from benchmark.identification.parameters.presses.marker_rings import MarkerRings, MarkerRows, rings_of
-from benchmark.identification.parameters.presses.model_error import LARGEST
 from benchmark.identification.parameters.presses.press_surrogate import Press
 from benchmark.identification.session_fit import SessionFit
 from benchmark.identification.sheet_model import FilmedTrial

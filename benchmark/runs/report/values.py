@@ -134,7 +134,9 @@ def _with_setup(fit: SessionFit, value: float | None) -> str:
         return ""
     unit = value / fit.stiffness.value
     low, high = (f"{unit * end:.4g}" for end in (wide.ci95_low, wide.ci95_high))
-    return f" by the trials' scatter, {low} to {high} with the uncertainty of the set-up as told"
+    return (
+        f" by the trials' scatter and the model's own error, {low} to {high} with the uncertainty of the set-up as told"
+    )
 
 
 def sentence(text: str) -> str:

@@ -4,8 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy
 
-from benchmark.identification import FittingError, fit_session, fit_trial, held_out_stiffness, predict
+from benchmark.identification import FittingError, TrialData, fit_session, fit_trial, held_out_stiffness, predict
+from benchmark.identification.model_error import model_error
 from benchmark.identification.pooling import pool
 from benchmark.identification.session_fit import elastic_only
 from benchmark.response import ForceCurve
@@ -52,6 +54,57 @@ def test_interval_covers_the_truth(session, options):
 )
 def test_interval_covers_the_truth_in_95_of_100_sessions(session, options):
     assert 0.925 <= coverage(session, 600, **options) <= 0.975
+
+
+def bent_session(curve_error, seed, rests):
+    """Three presses of 5 mm from the touch on, or from the air; the curve is 0.2 % low above 3 mm, 0.2 % high below."""
+    generator, depth = np.random.default_rng(seed), np.linspace(0.0 if rests else -6e-4, 5e-3, 361)
+    depth, true = np.append(np.zeros(40), depth) if rests else depth, np.linspace(0.0, 6e-3, 61)[1:]
+    force = 15.0 * true * (1.0 + (true / 3.5e-3) ** 2)
+    curve = ForceCurve(true, force * (1.0 + 2e-3 * np.tanh((true - 3.8e-3) / 4e-4)))
+    for name in "abc":
+        told = 1.7 * np.interp(depth, np.append(0.0, true), np.append(0.0, force)) * (1 + 2e-3 * generator.normal())
+        noisy = told + 5e-4 * generator.normal(size=depth.size)
+        yield TrialData(name, "slow", 0.025 * np.arange(depth.size), depth, noisy, curve, curve_error)
+
+
+@pytest.mark.parametrize("rests", [True, False])
+def test_a_bend_of_the_curve_itself_moves_nothing_out_of_its_interval(silicone, rests):
+    def missed(error):
+        found = [fit_session(list(bent_session(error, seed, rests)), [silicone]) for seed in range(10)]
+        rows = [{row.name: row for row in fit.parameters} for fit in found]
+        truth = {"stiffness_factor": 1.7, "contact_onset": 0.0, "force_zero": 0.0}
+        return {
+            name: sum(not one[name].ci95_low <= value <= one[name].ci95_high for one in rows)
+            for name, value in truth.items()
+        }
+
+    exact = missed(None)  # the bend is a touch
+    assert min(exact["stiffness_factor"], exact["contact_onset"]) >= 8
+    assert max(missed(model_error(None)).values()) <= 1
+
+
+def test_the_curves_own_error_is_no_scatter_of_trials(silicone):
+    exact = fit_session(list(bent_session(None, 1, True)), [silicone]).stiffness
+    found = fit_session(list(bent_session(model_error(None), 1, True)), [silicone])
+    share = 1.96 * np.mean([trial.of_curve[0] for trial in found.trials])
+    scattered = scipy.stats.t.ppf(0.975, 2) * found.stiffness.log_std / np.sqrt(3)
+    half = np.log(found.stiffness.ci95_high / found.stiffness.value)
+    assert half == pytest.approx(np.hypot(scattered, share), rel=1e-6)
+    assert share > 1.96 * model_error(None).size
+    assert f"{100 * share:.2g} % by the model's own error" in found.stiffness.method
+    assert "own error" not in exact.method
+    assert not found.joint.differs
+    assert all(trial.log_stiffness_stderr > trial.of_curve[0] for trial in found.trials)
+
+
+def test_a_curve_that_follows_to_the_noise_alone_is_fitted_as_ever(trial, silicone):
+    def fitted(error):
+        trials = [replace(trial(str(n), noise=0.02, rho=0.9, seed=n), error=error) for n in range(3)]
+        return fit_session(trials, [silicone])
+
+    exact, found = fitted(None), fitted(model_error(None))
+    assert found.stiffness_factor == pytest.approx(exact.stiffness_factor, rel=2e-3)
 
 
 def test_order_of_trials_does_not_matter(session, silicone):

@@ -8,12 +8,7 @@ import pytest
 from benchmark.errors import InputError
 from benchmark.files import Tool
 from benchmark.files.sessions.fit_table import FitTable
-from benchmark.identification.parameters.identifiability import directions, discrepancy_use
-from benchmark.identification.parameters.identified import identify
-from benchmark.identification.parameters.layer_fit import begun, fit_layers
-from benchmark.identification.parameters.pressed_set_ups import followed, press_all
-from benchmark.identification.parameters.presses import press_surrogate
-from benchmark.identification.parameters.presses.model_error import (
+from benchmark.identification.model_error import (
     COUNT,
     LENGTH,
     OTHER_CODE,
@@ -27,6 +22,11 @@ from benchmark.identification.parameters.presses.model_error import (
     model_error,
     taken,
 )
+from benchmark.identification.parameters.identifiability import directions, discrepancy_use
+from benchmark.identification.parameters.identified import identify
+from benchmark.identification.parameters.layer_fit import begun, fit_layers
+from benchmark.identification.parameters.pressed_set_ups import followed, press_all
+from benchmark.identification.parameters.presses import press_surrogate
 from benchmark.identification.parameters.session_problem import assembled
 from tests.benchmark.identification.parameters.conftest import MODULI, TRUTH, zeros_of
 
