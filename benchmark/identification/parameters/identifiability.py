@@ -21,7 +21,7 @@ import numpy as np
 from benchmark.identification.model_error import COUNT, PLAIN, functions
 from benchmark.identification.parameters.layer_fit import LayerFit
 from benchmark.identification.parameters.layer_model import MM, LayerModel
-from benchmark.identification.parameters.mixed_effects import course_left
+from benchmark.identification.parameters.mixed_effects import courses_left
 from benchmark.identification.parameters.presses.press_surrogate import GRID
 from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import TrialsFit, scaled_inverse
@@ -32,6 +32,7 @@ LARGEST_ERROR = KNOWN / 1.96
 """Standard error of a logarithm, by the trials alone, up to which a parameter can be determined: 35 %."""
 LEFT_NOISES = 3.0
 """Times the noise of their records from which on what a law leaves of trials is told of."""
+OVER_TIME = "one term of relaxation, or none, may be too few:"
 LEFT_ALIKE = 3e-3
 """Share of the force from which on what trials leave alike is told of: a law may be 14 % off with that."""
 
@@ -213,14 +214,17 @@ def unfollowed(found: LayerFit) -> list[str]:
     The memory of the noise takes it for chance, and intervals are those of a law that does not hold.
     """
     problem, said = found.problem, []
-    for number, (left, noise) in enumerate(zip(*course_left(found.fit), strict=True)):
+    for number, course in enumerate(courses_left(found.fit)):
+        left, noise = course.left, course.noise
         press, bend = problem.presses[number], problem.errors[number].bend
         force = np.median([np.ptp(one.data.force) for one in problem.trials if one.press == number])
         if left > max(LEFT_ALIKE * force, LEFT_NOISES * max(noise, bend * force)):
             said.append(
-                f"the law does not follow the trials under the tool of {MM * press.setup[1].radius:.3g} mm: residual "
+                f"the law does not follow the trials under the tool of {MM * press.setup[1].radius:.3g} mm"
+                f"{' over time' if course.over_time else ''}: residual "
                 f"{left:.2g} N, noise {noise:.2g} N ({100.0 * left / force:.2g} and {100.0 * noise / force:.2g} % of "
                 "the force). The values are those of another law, and their intervals, which trust it, may be far too "
-                "narrow; try another --law, or let the command discover say what is missing"
+                f"narrow; {OVER_TIME if course.over_time else 'try another --law, or'} let the command discover say "
+                "what is missing"
             )
     return said

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from benchmark.identification.parameters.layer_model import GAIN, MM, TOUCH, FilmNoise, LayerModel
+from benchmark.identification.parameters.layer_model import GAIN, MM, TOUCH, FilmNoise, FitTrial, LayerModel
 from benchmark.identification.trial_data import TrialData
 from benchmark.identification.trial_features import sample_noise
 from benchmark.response.force_curve import Array
@@ -127,34 +127,73 @@ def _criterion(ratio: float, counts: Array, means: Array, inside: float) -> tupl
     return value, float(np.sqrt(variance))
 
 
-def course_left(fit: TrialsFit[LayerModel]) -> tuple[Array, Array]:
-    """What a fit leaves of the force of each press' trials alike, and the noise of their records, both (P,) N.
+@dataclass(frozen=True)
+class CourseLeft:
+    """What a fit leaves of the force of one press' trials alike, and the noise of their records, N.
+
+    `over_time` where conditions were taken each by itself over time, where that says more than depth.
+    """
+
+    left: float = 0.0
+    noise: float = 0.0
+    over_time: bool = False
+
+    @property
+    def ratio(self) -> float:
+        """How many times the noise is left."""
+        return self.left / max(self.noise, 1e-300)
+
+
+def courses_left(fit: TrialsFit[LayerModel]) -> tuple[CourseLeft, ...]:
+    """What a fit leaves of the force of each press' trials alike, and the noise of their records.
 
     Trials of one press share what a law does not follow: the mean of what is left at a depth on the way down, or up,
-    less what chance leaves of a mean. The noise is told without the law: the largest of the scatter of samples, of the
-    force in the air and of what is left between trials, which slow noise makes. One trial is taken by itself where it
-    has been in the air, else its share is 0.
+    less what chance leaves of a mean; and trials of one condition what is left at a time after the touch, as in a hold.
+    The noise is told without the law: the largest of the scatter of samples, of the force in the air and of what is
+    left between trials, which slow noise makes. One trial is taken by itself where it has been in the air, else its
+    share is 0.
     """
-    model, out = fit.model, []
-    predicted = model.predicted(fit.vector, fit.nuisance)
-    errors = [one.data.force - force for one, force in zip(model.trials, predicted, strict=True)]
-    for press in range(len(model.surrogates)):
-        own = [k for k, one in enumerate(model.trials) if one.press == press]
-        if not own:
-            out.append((0.0, 0.0))
-            continue
-        touches, trials = fit.nuisance[own, TOUCH] / MM, [model.trials[k].data for k in own]
-        air = [_in_air(one, touch) for one, touch in zip(trials, touches, strict=True)]
-        noise = float(np.median(np.fmax(air, [sample_noise(one.force) for one in trials])))
-        if len(own) < 2:
-            lone = float(np.sqrt(np.mean(errors[own[0]] ** 2))) if np.isfinite(air[0]) else 0.0
-            out.append((lone, noise))
-            continue
-        places = [_places(one, touch) for one, touch in zip(trials, touches, strict=True)]
-        common, between = _shared(places, [errors[k] for k in own])
-        out.append((common, max(noise, between)))
-    left, noise = np.array(out).T
-    return left, noise
+    predicted = fit.model.predicted(fit.vector, fit.nuisance)
+    errors = [one.data.force - force for one, force in zip(fit.model.trials, predicted, strict=True)]
+    touches = fit.nuisance[:, TOUCH] / MM
+    return tuple(_course_left(fit.model.trials, touches, errors, press) for press in range(len(fit.model.surrogates)))
+
+
+def _course_left(trials: Sequence[FitTrial], touches: Array, errors: Sequence[Array], press: int) -> CourseLeft:
+    """Of one press."""
+    own = [k for k, one in enumerate(trials) if one.press == press]
+    if not own:
+        return CourseLeft()
+    air = [_in_air(trials[k].data, touches[k]) for k in own]
+    noise = float(np.median(np.fmax(air, [sample_noise(trials[k].data.force) for k in own])))
+    if len(own) < 2:
+        lone = float(np.sqrt(np.mean(errors[own[0]] ** 2))) if np.isfinite(air[0]) else 0.0
+        return CourseLeft(lone, noise)
+    found = [_alike([_shared([_places(trials[k].data, touches[k]) for k in own], [errors[k] for k in own])], noise)]
+    names = [trials[k].data.condition for k in own]
+    repeated = [[k for k, each in zip(own, names, strict=True) if each == name] for name in sorted(set(names))]
+    held = [
+        _shared(_times([trials[k].data for k in each], touches[each]), [errors[k] for k in each])
+        for each in repeated
+        if len(each) > 1
+    ]
+    if held:
+        found.append(replace(_alike(held, noise), over_time=True))
+    return max(found, key=lambda one: one.ratio)
+
+
+def _alike(shared: Sequence[tuple[float, float]], noise: float) -> CourseLeft:
+    """Of mean squares alike and apart in one group of trials or several."""
+    alike, apart = np.mean(shared, axis=0)
+    return CourseLeft(float(np.sqrt(alike)), max(noise, float(np.sqrt(apart))))
+
+
+def _times(trials: Sequence[TrialData], touches: Array) -> list[Array]:
+    """(n,) the cell of each row by the time since the touch, as long as all trials go on; -1 elsewhere."""
+    since = [one.time - one.time[int(np.argmax(one.depth > touch))] for one, touch in zip(trials, touches, strict=True)]
+    end = max(min(float(one[-1]) for one in since), 1e-300)
+    cells = [np.floor(2 * CELLS * one / end).astype(int) for one in since]
+    return [np.where((one >= 0) & (one < 2 * CELLS), one, -1) for one in cells]
 
 
 def _in_air(trial: TrialData, touch: float) -> float:
@@ -172,7 +211,7 @@ def _places(trial: TrialData, touch: float) -> Array:
 
 
 def _shared(places: Sequence[Array], errors: Sequence[Array]) -> tuple[float, float]:
-    """Root mean squares of what trials leave alike in cells, less chance's part, and of what they leave apart."""
+    """Mean squares of what trials leave alike in cells, less chance's part, and of what they leave apart."""
     means = np.full((len(places), 2 * CELLS), np.nan)
     for k, (cells, error) in enumerate(zip(places, errors, strict=True)):
         for cell in np.unique(cells[cells >= 0]):
@@ -182,7 +221,7 @@ def _shared(places: Sequence[Array], errors: Sequence[Array]) -> tuple[float, fl
         return 0.0, 0.0
     apart = float(np.mean(np.var(means[:, told], axis=0, ddof=1)))
     alike = float(np.mean(np.mean(means[:, told], axis=0) ** 2)) - apart / len(places)
-    return float(np.sqrt(max(alike, 0.0))), float(np.sqrt(apart))
+    return max(alike, 0.0), apart
 
 
 def renoised(fit: TrialsFit[LayerModel], freedom: int) -> tuple[LayerModel, float]:
