@@ -373,8 +373,9 @@ class _UnheldRun:
 
     def _freed(self, here: slice, memories: list[LagMemory], last: float) -> tuple[NumberArray, NumberArray]:
         durations = self.durations[here]
-        pace = durations[0] if durations[0] > 0.0 else np.inf
-        laws = [(stage.law, stage.ratio[:, here.start] / pace) for stage in self.stages]
+        moves = int((durations > 0.0).argmax())  # a step without a duration tells no rates
+        pace = durations[moves] or np.inf
+        laws = [(stage.law, stage.ratio[:, here.start + moves] / pace) for stage in self.stages]
         matrix, row = free_motion(laws, self.rate)
         start = np.concatenate([memory.state for memory in memories] + [np.array([last])] * bool(self.rate))
         speeds, shapes = np.linalg.eig(matrix)
@@ -385,8 +386,9 @@ class _UnheldRun:
     def _still(self, at: int, memories: list[LagMemory], last: float) -> float:
         """What comes in at the end of a step that answers with nothing."""
         duration = float(self.durations[at])
-        jump = self.rate / duration if self.rate and duration > 0.0 else 0.0
-        offset, gain = 0.0, 1.0
+        if self.rate and duration == 0.0:
+            return last  # what is damped does not move in no time
+        jump, offset, gain = self.rate / duration if self.rate else 0.0, 0.0, 1.0
         for stage, memory in zip(self.stages, memories, strict=True):
             step, weight = lag_step(stage.ratio[:, at]), stage.law.weight
             steps = zip(step.keep, weight * step.first, weight * step.last, strict=True)

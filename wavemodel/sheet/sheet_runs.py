@@ -134,7 +134,7 @@ def relaxing_run(load: Load, statics: Statics, series: Prony, sticks: bool) -> S
         return _standing(statics, load, load.value, statics.rest("force", elastic)[1])
     elastic, _ = statics.rest("depth", load.value)
     found, force = answered(relaxation(series), load, elastic, sticks)
-    stands = load.value
+    stands = load.value if sticks else np.maximum(load.value, 0.0)
     if found.free.any():
         stands = np.where(found.free, statics.rest("force", found.value)[1], stands)
     return replace(_standing(statics, load, force, stands), depth=load.value)

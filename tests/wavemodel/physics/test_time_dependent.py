@@ -92,6 +92,20 @@ def test_a_damped_surface_comes_back_in_its_time():
     assert found.force[-1] == pytest.approx(500.0 * (0.9e-3 + 0.2 * (0.9e-3 - found.surface[3]) / 0.1))
 
 
+@pytest.mark.parametrize("damping", [None, ViscousDamping(0.2)])
+def test_a_sample_without_a_duration_lets_nothing_creep(damping):
+    """Lost in such a sample, or free over it, the surface stands after it as without it; damped it does not move."""
+    press = QuasiStaticPress(lambda d: 500.0 * d, Physics(relaxation=SERIES, damping=damping))
+    _, held = press.follow(np.array([0.1, 3.0]), np.array([2e-3, 2e-3]), press.rest())
+    lost, away = press.follow(np.array([0.0 if damping else 1e-9]), np.zeros(1), held)
+    steps = np.full(20, 0.05)
+    plain, _ = press.follow(steps, np.zeros(20), away)
+    after, _ = press.follow(np.append(0.0, steps), np.zeros(21), away)
+    assert lost.surface[-1] == pytest.approx(2e-3 if damping else 0.8e-3, rel=0.2)
+    assert plain.surface[-1] < 0.9 * lost.surface[-1]
+    np.testing.assert_allclose(after.surface, np.append(lost.surface, plain.surface), rtol=1e-6)
+
+
 def test_drained_tissue_fills_again_before_it_is_met_where_it_was():
     """F = 0 with one lag after the other: sample by sample, the depth at which a held body answers with nothing."""
     option = PoroelasticDrainage(0.5, 1e-6, 2e-3)

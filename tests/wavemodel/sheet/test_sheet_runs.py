@@ -52,6 +52,25 @@ def test_in_the_end_the_sheet_is_as_soft_as_its_series_leaves_it(silicone):
     assert solution.profile(-1, np.zeros(1))[0, 0] == pytest.approx(solution.top_deflection[-1, 0], rel=1e-3)
 
 
+@pytest.mark.parametrize("contact", ["uniform_pressure", "rigid_bonded"])
+def test_a_sheet_that_does_not_stick_is_lost_by_depth_and_met_where_it_has_crept_to(silicone, contact):
+    """Under its force it stands at the tool or, where there is none, below it and not above nought. Stuck, it pulls."""
+    plate = sheet_of(silicone, contact, relaxation=SERIES)
+    time = np.linspace(0.05, 3.0, 60)
+    depth = np.interp(time, [0.0, 0.5, 1.5, 1.6, 2.2, 2.4, 3.0], [-1e-3, 3e-3, 3e-3, -1e-3, -1e-3, 3e-3, 3e-3])
+    pressed = plate.run("depth", time, depth)
+    np.testing.assert_array_equal(pressed.depth, depth)
+    if contact == "rigid_bonded":
+        assert pressed.force.min() < -0.1
+        return
+    assert pressed.force.min() == 0.0
+    back, free = plate.run("force", time, pressed.force), pressed.force == 0.0
+    assert (free & (time > 1.0)).sum() > 10
+    assert (pressed.top_deflection[free, 0] >= np.maximum(depth[free], 0.0)).all()
+    np.testing.assert_allclose(back.depth[~free], depth[~free], atol=2e-6)
+    np.testing.assert_allclose(pressed.top_deflection, back.top_deflection, atol=2e-6)
+
+
 def test_options_of_the_body_act_on_the_sheet(silicone):
     time, depth = np.linspace(0.1, 2.0, 20), 3e-3 * np.minimum(np.linspace(0.1, 2.0, 20), 2.0 - np.linspace(0.1, 2, 20))
     plain, floor = sheet_of(silicone), sheet_of(silicone, physics=Physics(floor=Floor(2e-3, 1e5)))
