@@ -9,9 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 
+from benchmark.comparison.percent_error import plain_percent
 from benchmark.discovery import criteria
 from benchmark.discovery.base.bent_form import added_by
 from benchmark.discovery.base.effect_model import Fit
+from benchmark.discovery.base.setup_priors import shares
 from benchmark.discovery.discovery_result import Array, ConditionEstimate, Estimate
 from benchmark.discovery.evidence.gains import conditions
 from benchmark.physics import Effect, EffectParameter
@@ -97,8 +99,9 @@ def moved_far(fitted: Fit) -> tuple[str, ...]:
     if not (far and fitted.model.effects):
         return ()
     said = ", ".join(
-        f"{key} by {100.0 * change:+.2g} %, {abs(change) / problem.setup[key]:.2g} standard deviations of what was told"
-        for key, change in far.items()
+        f"{key} by {plain_percent(100.0 * share, sign=True)}, {abs(far[key]) / problem.setup[key]:.2g} standard "
+        "deviations of what was told"
+        for key, share in shares(far).items()
     )
     return (
         f"beside what is named the set-up lies far from what was told ({said}): it may make up for an effect whose "

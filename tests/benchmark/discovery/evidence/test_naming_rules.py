@@ -864,3 +864,10 @@ def test_a_set_up_that_moved_far_beside_an_effect_is_warned_of(change, effects, 
     assert [all(part in each for part in ("support.hole_radius by +21 %", "21 standard")) for each in found] == [
         True
     ] * said
+
+
+def test_a_modulus_that_moved_far_is_told_by_its_share_though_its_logarithm_is_fitted():
+    problem = SimpleNamespace(shapes=("fat.youngs_modulus",), setup={"fat.youngs_modulus": 0.1})
+    model = SimpleNamespace(problem=problem, effects=("pretension",))
+    fitted = SimpleNamespace(model=model, vector=np.array([np.log(3.0)]), prior_mean=np.zeros(1))
+    assert "fat.youngs_modulus by +200 %, 11 standard" in moved_far(fitted)[0]
