@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import itertools
 import shutil
 import tomllib
@@ -22,6 +21,7 @@ from bench_hw.storage.folder_lock import scratch
 from benchmark.discovery.planning.proposing import Allowed
 from benchmark.discovery.report.discovery_record import NextExperiment
 from benchmark.errors import DeviceError, InputError
+from benchmark.files.sessions.session_folder import digest
 from reports import write_text
 
 Asked = Callable[[NextExperiment, Mapping[str, Any]], bool]
@@ -203,15 +203,10 @@ def recorded(session: Path, folder: Path) -> bool:
     return not _contents(folder) <= _contents(session)
 
 
-def _contents(folder: Path) -> set[bytes]:
+def _contents(folder: Path) -> set[str]:
     """What the files below a folder hold, each as a digest, but for the session file, which has no measurement."""
     files = (each for each in folder.rglob("*") if each.is_file() and each != folder / "session.toml")
-    return {_digest(file) for file in files}
-
-
-def _digest(file: Path) -> bytes:
-    with file.open("rb") as opened:
-        return hashlib.file_digest(opened, "sha256").digest()
+    return {digest(file) for file in files}
 
 
 def enter(folder: Path, proposal: NextExperiment, trials: Sequence[Mapping[str, str]]) -> None:

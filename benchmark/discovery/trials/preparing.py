@@ -78,13 +78,12 @@ def prepare(session: Session, rows: int) -> Study:
 
 def _scatter(raw: Sequence[RawTrial]) -> list[str]:
     """That depths scatter and were made steady."""
-    steadied = [scatter_of(each.trial.table.depth) for each in raw if each.steadied]
-    if not steadied:
+    sizes = [scatter_of(each.trial.table.depth) for each in raw if each.steadied]
+    if not sizes:
         return []
-    size = f"{1e6 * np.median(steadied):.2g} um"
     return [
-        f"the depth of {len(steadied)} of {len(raw)} trials scatters by {size} from row to row, which the force does not "
-        "follow: strokes and rests were smoothed"
+        f"the depth of {len(sizes)} of {len(raw)} trials scatters by {1e6 * np.median(sizes):.2g} um from row to row, "
+        "which the force does not follow: strokes and rests were smoothed"
     ]
 
 

@@ -121,10 +121,14 @@ def fingerprint(folder: Path, files: Iterable[Path]) -> str:
     """SHA-256 over the names and contents of a session's files, in hex; their order does not matter."""
     total = hashlib.sha256()
     for file in sorted(set(files)):
-        with file.open("rb") as stream:
-            digest = hashlib.file_digest(stream, "sha256").hexdigest()
-        total.update(f"{file.relative_to(folder).as_posix()} {digest}\n".encode())
+        total.update(f"{file.relative_to(folder).as_posix()} {digest(file)}\n".encode())
     return total.hexdigest()
+
+
+def digest(file: Path) -> str:
+    """SHA-256 of what a file holds, in hex."""
+    with file.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
 def _made(name: str, trials: list[dict[str, str]]) -> dict[str, Any]:
