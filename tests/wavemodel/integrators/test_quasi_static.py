@@ -65,6 +65,8 @@ def test_a_surface_that_does_not_stick_is_driven_back_by_the_force_it_answers_wi
             back, free = wave.run("force", time, pressed.force), pressed.force == 0.0
             assert free.sum() > 20
             assert (back.depth[free] > depth[free]).all()
+            stands = quasi_static(checked_load("depth", time, depth), wave.body).depth
+            assert (stands[free] > depth[free]).all()
             atol = 1e-3 * (5.0 if retardation else 0.02)  # the force jumps where the damped surface is met
             np.testing.assert_allclose(back.depth[~free], depth[~free], atol=atol)
             np.testing.assert_allclose(pressed.top_deflection, back.top_deflection, atol=atol)

@@ -17,6 +17,7 @@ def test_a_small_slow_press_with_all_automatic_has_none(skin):
     ("options", "words"),
     [
         ({"force": 1.0}, "linear, for small strain"),
+        ({"force": 100.0}, "is 2270 % of the"),
         ({"discretisation": WaveDiscretisation(window=24e-3)}, "border of the 24 mm window"),
         ({"discretisation": WaveDiscretisation(sublayers=(1, 1, 1))}, "sub-layers cost"),
         ({"duration": 0.02, "integrator": "quasi_static"}, "inertia is left out"),

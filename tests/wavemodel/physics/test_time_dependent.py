@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from wavemodel import Prony, WaveError
-from wavemodel.physics.contact import Adhesion
-from wavemodel.physics.quasi_static_press import Physics, QuasiStaticPress
+from wavemodel.physics.contact import Adhesion, PermanentSet
+from wavemodel.physics.quasi_static_press import Physics, QuasiStaticPress, joined
 from wavemodel.physics.time_dependent import PoroelasticDrainage, ViscousDamping
 
 SERIES = Prony((0.3, 0.2), (0.4, 6.0))
@@ -119,6 +119,43 @@ def test_drained_tissue_fills_again_before_it_is_met_where_it_was():
         trace, state = press.follow(np.array([duration]), np.array([depth]), state, held=True)
         if not touching:
             assert abs(trace.force[0]) < 2e-5
+
+
+def test_a_surface_drains_alike_however_it_is_cut_and_however_far_the_tool_is_away():
+    """Under an edge by the depth at which it was last touched, which depends on where it is lost and met."""
+    press = QuasiStaticPress(lambda d: 500.0 * d, Physics(drainage=PoroelasticDrainage(0.5, 1e-6, 2e-3, 2e-3)))
+    time = np.linspace(0.02, 5.0, 250)
+    duration, surfaces = np.diff(time, prepend=0.0), []
+    for up in (0.05e-3, -1e-3):
+        depth = np.interp(time, TURNS, [0.0, 1e-3, 1e-3, 0.0, 0.0, 1e-3, 1e-3])
+        depth = np.where((time > 3.0) & (time < 3.4), up, depth)
+        whole, state, parts = press.trace(time, depth), press.rest(), []
+        for step, goal in zip(duration, depth, strict=True):
+            part, state = press.follow(np.array([step]), np.array([goal]), state)
+            parts.append(part)
+        np.testing.assert_allclose(joined(parts).surface, whole.surface, rtol=1e-9, atol=1e-15)
+        np.testing.assert_allclose(joined(parts).force, whole.force, rtol=1e-9, atol=1e-12)
+        assert (~whole.touching).sum() > 15
+        surfaces.append(whole.surface)
+    np.testing.assert_allclose(*surfaces, rtol=1e-9, atol=1e-15)
+
+
+def test_a_surface_that_keeps_a_set_is_free_where_it_would_answer_with_nothing():
+    press = QuasiStaticPress(lambda d: 500.0 * d, Physics(relaxation=SERIES, permanent_set=PermanentSet(0.3)))
+    time = np.linspace(0.01, 5.0, 500)
+    found = press.trace(time, np.interp(time, TURNS, [0.0, 1e-3, 1e-3, 0.0, 0.0, 1e-3, 1e-3]))
+    assert (~found.touching).sum() > 30
+    held, _ = press.follow(np.diff(time, prepend=0.0), found.surface, press.rest(), held=True)
+    assert np.abs(held.force[~found.touching]).max() < 1e-6
+
+
+def test_adhesion_holds_a_tissue_that_relaxes_up_to_its_force():
+    press = QuasiStaticPress(lambda d: 500.0 * d, Physics(relaxation=SERIES, adhesion=Adhesion(0.1)))
+    time = np.linspace(0.01, 5.0, 500)
+    found = press.trace(time, np.interp(time, TURNS, [0.0, 1e-3, 1e-3, 0.0, 0.0, 1e-3, 1e-3]))
+    assert -0.1 <= found.force.min() < -0.05
+    assert found.touching[found.force < 0.0].all()
+    assert not found.touching.all()
 
 
 def test_what_adhesion_holds_is_lost_like_nothing_where_it_is_little():
