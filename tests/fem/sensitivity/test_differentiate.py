@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from fem.analysis.newton import NewtonSettings
 from fem.interactions import active_set
 from fem.linear_solver import SingularMatrixError
 from fem.sensitivity.changed_equations import changed_equations, moved_mesh
-from fem.sensitivity.following import _correction
+from fem.sensitivity.following import Following, _correction
 
 TIGHT = NewtonSettings(tolerance=1e-13)
 COARSE = fem.Discretisation("coarse")
@@ -208,3 +209,14 @@ def test_a_derivative_that_is_no_number_is_said(monkeypatch, control: str, part:
     monkeypatch.setattr(equilibrium.solver, "solve", solve)
     with pytest.raises(fem.NotDifferentiableError, match=message):
         _correction(equilibrium, control, solved[:, :1])
+
+
+def test_a_state_whose_stiffness_cannot_be_factorised_has_no_derivative(monkeypatch) -> None:
+    def factorise(*_: object) -> None:
+        raise SingularMatrixError("the stiffness matrix is singular")
+
+    equilibrium = fem.prepare(tied()).equilibrium
+    monkeypatch.setattr(type(equilibrium), "factorise", factorise)
+    state, system = SimpleNamespace(y=None, pressure=None), SimpleNamespace(evaluate=lambda *_: "evaluated")
+    with pytest.raises(fem.NotDifferentiableError, match="no derivative: the stiffness matrix is singular"):
+        Following(equilibrium, "force", [])(system, state, 1.0)
