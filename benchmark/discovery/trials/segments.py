@@ -213,7 +213,7 @@ def _scatters(depth: Array, force: Array) -> bool:
     """Whether a depth scatters by what counts beside the force's own scatter, and the force does not follow it."""
     scatter, reach = scatter_of(depth), max(float(depth.max()), 1e-300)
     stiffness = float(np.ptp(force)) / reach
-    if depth.max() <= 0.0 or stiffness * scatter <= criteria.SCATTERS * scatter_of(force):
+    if stiffness * scatter <= criteria.SCATTERS * scatter_of(force):
         return False
     inside = depth[:-3] > criteria.IN_CONTACT * reach
     jumps, answers = np.diff(depth, 3)[inside], np.diff(force, 3)[inside]

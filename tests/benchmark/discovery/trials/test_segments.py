@@ -166,6 +166,8 @@ def test_a_scatter_below_what_the_force_shows_stays():
     read = depth + 1e-7 * rng.normal(size=time.size)
     assert steadied(time, read, force) is read
     assert steadied(time, depth, force) is depth
+    air = 5e-6 * rng.normal(size=time.size) - 1e-4
+    assert steadied(time, air, force) is air
 
 
 def test_a_stroke_of_a_few_rows_stays_as_it_is():
