@@ -5,7 +5,7 @@ import pytest
 
 from benchmark.discovery.discovery_result import PHASES
 from benchmark.discovery.trials.rows import bin_means, bin_sizes, fractions
-from benchmark.discovery.trials.segments import reversals, segments, stages, steadied, without_dwells
+from benchmark.discovery.trials.segments import reversals, scatter_of, segments, stages, steadied, without_dwells
 
 
 def test_reversals_are_found_through_noise():
@@ -160,6 +160,22 @@ def test_a_motion_that_the_force_follows_stays():
     assert steadied(time, read, force) is read
 
 
+def test_a_motion_that_the_force_follows_stays_however_long_the_air_before_it_was():
+    """In the air the force follows nothing."""
+    rng, time = np.random.default_rng(6), np.arange(0.0, 16.0, 0.02)
+    read = np.interp(time, [0.0, 10.0, 13.0, 16.0], [-4e-4, -1e-4, 4e-4, -1e-4]) + 5e-6 * rng.normal(size=time.size)
+    force = STIFFNESS * np.maximum(read, 0.0) + 1e-4 * rng.normal(size=time.size)
+    assert steadied(time, read, force) is read
+
+
+def test_a_stroke_that_bends_is_no_line():
+    rng, time = np.random.default_rng(7), np.arange(0.0, 10.0, 0.02)
+    depth = 2e-4 * (1.0 - np.cos(0.2 * np.pi * time))
+    force = STIFFNESS * depth + 2e-3 * rng.normal(size=time.size)
+    steady = steadied(time, depth + 5e-6 * rng.normal(size=time.size), force)
+    assert np.std(steady - depth) < 2.5e-6
+
+
 def test_a_scatter_below_what_the_force_shows_stays():
     time, depth, _, force = scattering(1)
     rng = np.random.default_rng(3)
@@ -177,3 +193,4 @@ def test_a_stroke_of_a_few_rows_stays_as_it_is():
     force = np.zeros(12)
     force[5] = 1.0
     assert steadied(time, read, force)[:5].tolist() == read[:5].tolist()
+    assert scatter_of(np.array([0.0, 1e-3, 0.0])) == 0.0
