@@ -122,6 +122,16 @@ def test_what_is_small_on_average_must_be_small_in_every_step(rows):
     assert not found.within_margin
 
 
+def test_a_history_counts_the_way_down_and_a_pull_by_their_size():
+    fem = np.concatenate([ramp(8), ramp(8)[-2::-1], -0.5 * ramp(4)])
+    found = history_equivalence(fem, fem + 0.015 * np.abs(fem))
+    assert found.over_load == pytest.approx(0.015)
+    assert found.within_margin
+    assert history_equivalence(fem, fem - 0.015 * np.maximum(fem, 0.0)).worst == pytest.approx(-0.015)
+    cycle = np.append(fem[:15], 0.0)
+    assert history_equivalence(cycle, 1.015 * cycle).over_load == pytest.approx(0.015)
+
+
 @pytest.mark.parametrize("rows", [8, 20, 100, 1000])
 def test_an_offset_counts_by_the_mean_over_the_load(rows):
     """Half of the peak, however many rows; the step from nought takes it up."""

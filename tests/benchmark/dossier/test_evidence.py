@@ -59,6 +59,8 @@ def test_families_that_were_not_verified_are_told(tmp_path, monkeypatch) -> None
     ((says, limits),) = answers(every)["closed_forms"]
     assert says.endswith("of 3 of 3 families.")
     assert limits == ()
+    known_cases(monkeypatch, "cook", "cooked")
+    assert "Not run: cook." in answers(verified(tmp_path / "like", "cooked"))["closed_forms"][0][0]
 
 
 VALIDATION = """quantity,protocol,simulation,measure,value,unit
@@ -216,6 +218,19 @@ def test_what_is_no_result_is_refused_by_name(tmp_path) -> None:
     (tmp_path / "fit.json").write_text('{"schema": 1}')
     with pytest.raises(InputError, match="make the result again"):
         evidence_of(read_result(tmp_path))
+
+
+@pytest.mark.parametrize(("within", "limits"), [(True, ()), (False, (AGAINST,))])
+def test_two_models_are_judged_by_the_margin_over_the_history(tmp_path, within, limits) -> None:
+    """Not by the test, whose outcome depends on the number of rows; of older results there is that alone."""
+    folder = run_result(tmp_path / "r")
+    document = json.loads((folder / "results.json").read_text())
+    for entry in document["comparison"].values():
+        entry |= {"equivalent": not within, "within_margin": within}
+    (folder / "results.json").write_text(json.dumps(document))
+    ((says, found),) = answers(folder)["second_model"]
+    assert found == limits
+    assert ("equivalence is not shown" in says) is not within
 
 
 def test_two_models_are_called_by_their_names(tmp_path) -> None:
