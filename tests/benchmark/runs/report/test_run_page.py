@@ -12,10 +12,11 @@ from benchmark.runs.options import RunOptions
 from benchmark.runs.output.document import results_document
 from benchmark.runs.record import RunRecord, compare_layers
 from benchmark.runs.report.run_page import run_page, run_verdict
+from benchmark.runs.report.trials_section import _residual_row
 from benchmark.runs.report.values import peak_errors
 from benchmark.runs.scenario_run import run_scenario
 from benchmark.runs.tables import run_tables
-from benchmark.runs.validation import condition_columns, validation_columns
+from benchmark.runs.validation import condition_columns, furthest_off, validation_columns
 from reports import Verdict
 
 QUICK = {"fem.mesh": "coarse", "load.observations": "20", "wave.large_press": "linear"}
@@ -218,3 +219,29 @@ def test_the_first_figures_of_a_press_by_depth_are_forces(finished: RunRecord) -
     assert asked["F"].unit == "mm"
     assert (asked["d"].unit, asked["d"].value) == ("N", pytest.approx(5.0))
     assert asked["d"].note.startswith("largest force, at ")
+
+
+def test_trials_judge_the_finite_elements_alone() -> None:
+    """A wave that is off speaks against itself, not against both."""
+    columns = {
+        "protocol": ["prediction"] * 2, "simulation": ["fem", "wave"], "condition": ["a"] * 2, "trials": [3, 3],
+        "D_N": [1.0, 1.0], "E_N": [0.0, 0.5], "u_D_N": [0.01, 0.01], "u_val_N": [0.01, 0.01],
+    }  # fmt: skip
+    assert furthest_off(columns, 0.02) is None
+    assert furthest_off({**columns, "simulation": ["wave", "fem"]}, 0.02) == ("a", 0.5, 50.0)
+
+
+def test_a_model_is_compared_at_the_peak_though_it_has_no_force_elsewhere(finished) -> None:
+    measured = _measured({"a": (1.0, 1.0)}, 1.0)
+    for trial in measured.trials:
+        trial.fem_force = np.array([np.nan, 1.1])
+    columns = validation_columns(replace(finished, measured=measured), ())
+    assert dict(zip(columns["measure"], columns["value"], strict=True))["E"] == pytest.approx(0.1)
+
+
+def test_residuals_are_shares_of_the_peak_that_is_not_the_noise() -> None:
+    time = np.arange(200) / 20.0
+    force = 0.3 + np.random.default_rng(1).normal(0.0, 5e-3, 200)
+    models = {"fem_force": force, "wave_force": None, "held_out_force": None}
+    row = _residual_row(SimpleNamespace(trial="t", condition="a", time=time, force=force, **models))
+    assert row[2] == pytest.approx(0.3, abs=2e-3)
