@@ -82,3 +82,8 @@ def test_what_is_added_follows_its_amount_and_the_set_up_and_a_face_shows_part_o
     assert beyond == pytest.approx(1e7 * per_unit(1e5) * FORCE, rel=1e-9)
     changed = found.force_added({"physics.pretension": 1e3}, {"tool.radius": 0.21, "fat.thickness": -0.2})
     assert changed == pytest.approx(found.force_added({"physics.pretension": 1e3}) * 1.1 * 0.8, rel=1e-9)
+
+
+def test_what_is_added_stays_finite_for_a_set_up_far_away() -> None:
+    more = Addition(np.array([200.0]), FORCE[None], powers={"tool.radius": np.full(FORCE.size, 1e4)})
+    assert np.isfinite(more.force_of(1.0, {"tool.radius": 1.0})).all()

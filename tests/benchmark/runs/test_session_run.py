@@ -59,6 +59,28 @@ def test_the_relaxation_that_films_told_is_in_both_models_side_by_side(relaxatio
     assert len(session_run._told_otherwise(found, kept)) == (relaxation != NONE)
 
 
+def test_films_that_told_no_sheet_leave_the_tissue_as_it_is() -> None:
+    found = SimpleNamespace(stiffness_factor=0.8, filmed=SimpleNamespace(sheet=None))
+    told = load_tissue("skin_forearm")
+    assert session_run.relaxing_tissue(found, told) == session_run.fitted_tissue(found, told)
+    assert session_run._told_otherwise(found, told) == ()
+
+
+def test_a_run_says_that_its_specimen_relaxes_otherwise(monkeypatch) -> None:
+    sheet = SimpleNamespace(relaxation=Relaxation(0.06, 1.5))
+    found = SimpleNamespace(
+        session=SimpleNamespace(name="day"), fit=None, warnings=(), filmed=SimpleNamespace(sheet=sheet)
+    )
+    monkeypatch.setattr(session_run, "fit_trials", lambda *_, **__: found)
+    monkeypatch.setattr(
+        session_run, "session_scenario", lambda *_, **__: (SimpleNamespace(tissue=load_tissue("skin_forearm")), ())
+    )
+    monkeypatch.setattr(session_run, "_predictions", lambda *_: ((), ()))
+    monkeypatch.setattr(session_run, "run_scenario", lambda *_, warnings, **__: warnings)
+    (said,) = session_run.run_session(None, None, {}, None, None)
+    assert said.startswith("the relaxation found in the trials (g = 0.06, tau = 1.5 s)")
+
+
 def test_the_press_goes_to_the_peak_of_the_trials_and_not_of_their_noise() -> None:
     random, time = np.random.default_rng(1), np.arange(200) / 20.0
     trials = [SimpleNamespace(key=n, time=time, force=0.3 + random.normal(0.0, 5e-3, 200)) for n in range(5)]
