@@ -105,6 +105,13 @@ def test_without_a_replicate_nothing_is_judged(tmp_path, told) -> None:
     assert PARTIAL in limits
 
 
+def test_one_condition_is_judged_by_the_mean_of_all_alone(tmp_path) -> None:
+    head, *rows = CONDITIONS.splitlines(keepends=True)
+    lone = head + "".join(row for row in rows if row.startswith("deep"))
+    found = answers(run_result(tmp_path / "r", conditions=lone))
+    assert not any("peak force of deep" in says for says, _ in found["agreement"])
+
+
 def test_conditions_without_a_replicate_are_not_judged(tmp_path) -> None:
     """They were, by the u_val that older results have there."""
     lone = CONDITIONS.replace(",0.1,0.02,0.102", ",0.1,,0.1")
