@@ -28,8 +28,9 @@ ForceLaw: TypeAlias = Callable[[FloatArray], FloatArray]
 WIDENINGS = 60
 EXACT = 1e-13
 """Of the force, and of the depth (relatively), to which a step is solved."""
-HALVINGS = 48
-"""Of the depth so far, for where a free surface stands."""
+CHORDS, CLOSE = 60, 1e-12
+"""At most so many, and the share of the force to which they are to come, for where a free surface stands: false
+position, an end that stays halved (M. Dowell and P. Jarratt, BIT 11 (1971) 168)."""
 PASSES = 12
 """At most, where how fast fluid drains goes with where the tool touches."""
 NO_SET, NO_ADHESION = PermanentSet(0.0), Adhesion()
@@ -274,13 +275,25 @@ class QuasiStaticPress:
     def _depth_at(self, tool: LoadSegment, force: FloatArray, away: BoolArray, state: PressState) -> FloatArray:
         """(n,) depth below the surface at which it stands, m: the tool's, or where it is away that of its force."""
         high = np.maximum(np.maximum.accumulate(tool.depth), state.depth)
-        low = np.zeros_like(high)
-        for _ in range(HALVINGS):
-            middle = np.where(away, 0.5 * (low + high), tool.depth)
-            tried, _ = self._elastic(self._bare(tool, middle, tool.touching | away), state)
-            below = tried.force < force
+        low, side = np.zeros_like(high), np.zeros(high.size)
+
+        def off(depth: FloatArray) -> FloatArray:
+            tried, _ = self._elastic(self._bare(tool, np.where(away, depth, tool.depth), tool.touching | away), state)
+            return tried.force - force
+
+        under, over, middle = off(low), off(high), high
+        for _ in range(CHORDS):
+            width = over - under
+            middle = high - over * np.divide(high - low, width, out=np.zeros_like(width), where=width != 0.0)
+            left = off(middle)
+            if np.all(np.abs(left[away]) <= CLOSE * np.abs(force[away])):
+                break
+            below = left < 0.0
+            under, over = np.where(side > 0.0, 0.5 * under, under), np.where(side < 0.0, 0.5 * over, over)
             low, high = np.where(below, middle, low), np.where(below, high, middle)
-        return np.where(away, 0.5 * (low + high), tool.depth)
+            under, over = np.where(below, left, under), np.where(below, over, left)
+            side = np.where(below, -1.0, 1.0)
+        return np.where(away, middle, tool.depth)
 
     def _bare(self, tool: LoadSegment, depth: FloatArray, touching: BoolArray) -> LoadSegment:
         """The bare law at other depths."""
