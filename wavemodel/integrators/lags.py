@@ -18,7 +18,7 @@ from wavemodel.arrays import BoolArray, FloatArray, IntArray, NumberArray
 from wavemodel.integrators.scan import decaying_sum
 from wavemodel.integrators.viscoelastic import Prony
 
-WINDOW = 64
+WINDOW = 256
 """Steps that are looked ahead for where a tool loses a surface, or meets it; twice as many where it does not."""
 
 
