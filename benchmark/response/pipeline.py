@@ -134,11 +134,11 @@ class TrialPipeline:
         added = [(effect, values[effect.slug]) for effect in self.effects]
         physics = physics_of(added, self.around)
         moved = [_late_and_low(motion, shift, height) for motion, (_, shift, height) in zip(motions, own, strict=True)]
-        presses = [
-            _history(motion, added, _times(gain, elastic), physics)
+        traces = [
+            _pressed(motion, added, _times(gain, elastic), physics)
             for elastic, motion, (gain, _, _) in zip(elastics, moved, own, strict=True)
         ]
-        seen = self._seen(elastics, presses, added)
+        seen = self._seen(elastics, moved, traces, added)
         return [self._observed(readings, motion, added) for readings, motion in zip(seen, moved, strict=True)]
 
     def _observed(self, readings: Readings, motion: Motion, added: Sequence[Added]) -> Readings:
@@ -149,12 +149,13 @@ class TrialPipeline:
         return readings
 
     def _seen(
-        self, elastics: Sequence[Elastic], presses: Sequence[PressHistory], added: Sequence[Added]
+        self, elastics: Sequence[Elastic], moved: Sequence[Motion], traces: Sequence[PressTrace], added: Sequence[Added]
     ) -> list[Readings]:
         """The force, and the markers where there are any."""
         rest = self.around.markers
         if rest is None:
-            return [Readings(press.force) for press in presses]
+            return [Readings(trace.force) for trace in traces]
+        presses = [_history(motion, trace) for motion, trace in zip(moved, traces, strict=True)]
         faces = _lower_faces(elastics, [self._spread(press, added) for press in presses], rest)
         out = []
         for press, (markers, sink) in zip(presses, faces, strict=True):
@@ -186,10 +187,8 @@ def _late_and_low(motion: Motion, shift: float, height: float) -> Motion:
     return replace(late, depth=late.depth - height)
 
 
-def _history(motion: Motion, added: Sequence[Added], law: Law, physics: Physics) -> PressHistory:
-    """A press worked out."""
-    body = PressedBody(law, motion.time - motion.time[0] + FIRST_STEP, physics)
-    trace = _pressed(motion, added, body)
+def _history(motion: Motion, trace: PressTrace) -> PressHistory:
+    """A press worked out, with where the surface stood."""
     return PressHistory(motion.time, trace.depth, trace.surface, trace.force, trace.elastic, trace.touching)
 
 
@@ -224,15 +223,16 @@ def _driven(motion: Motion, added: Sequence[Added], body: PressedBody) -> Array:
     return depth
 
 
-def _pressed(motion: Motion, added: Sequence[Added], body: PressedBody) -> PressTrace:
+def _pressed(motion: Motion, added: Sequence[Added], law: Law, physics: Physics) -> PressTrace:
     """The press; where rows are means, damped by how the elastic force changes within them, not from one to the next.
 
     The change is that between the forces of the rows an interval of the record earlier and later.
     """
-    depth, damping = _driven(motion, added, body), body.physics.damping
+    body = PressedBody(law, motion.time - motion.time[0] + FIRST_STEP, physics)
+    depth, damping = _driven(motion, added, body), physics.damping
     if motion.record is None or damping is None or damping.retardation == 0.0:
         return body.trace(depth)
-    free, step = replace(body, physics=replace(body.physics, damping=None)), motion.record.interval
+    free, step = replace(body, physics=replace(physics, damping=None)), motion.record.interval
     before, after = (free.trace(_driven(motion.before(each), added, body)).elastic for each in (step, -step))
     trace = free.trace(depth)
     force = trace.force + damping.retardation * (after - before) / (2.0 * step)

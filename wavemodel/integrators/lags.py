@@ -290,10 +290,7 @@ def standing(
     memories = [stage.memory for stage in stages]
     lags = [np.empty(stage.ratio.shape, dtype=np.result_type(stage.law.weight)) for stage in stages]
     run = _UnheldRun(stages, durations, tool, touching, rate, hold, tool.copy(), ~touching, lags)
-    if run.lost(slice(0, tool.size), memories, last).size:
-        run.follow(memories, last, held)
-    else:
-        run.pressed(slice(0, tool.size), memories)
+    run.follow(memories, last, held)
     return Standing(run.out, run.free, tuple(lags), run.answer(), tuple(run.at(tool.size - 1)))
 
 
@@ -312,20 +309,20 @@ class _UnheldRun:
     lags: Sequence[NumberArray]
 
     def follow(self, memories: list[LagMemory], last: float, held: bool) -> None:
-        """From event to event, in windows that grow where there is none."""
-        at, size = 0, WINDOW
+        """From event to event: first all steps at once, then in windows that grow where there is none."""
+        at, size = 0, self.out.size
         while at < self.out.size:
             here = slice(at, min(at + size, self.out.size))
-            events = self.lost(here, memories, last) if held else self._let_return(here, memories, last)
+            events = self._lost(here, memories, last) if held else self._let_return(here, memories, last)
             end = at + int(events[0]) if events.size else here.stop
             if end > at:
-                memories = self.pressed(slice(at, end), memories) if held else self.at(end - 1)
-                last = float(self.out[end - 1])
+                memories, last = self.at(end - 1), float(self.out[end - 1])
             if events.size and held:
                 self.out[end], self.free[end] = self._still(end, memories, last), True
-                memories, last = self.pressed(slice(end, end + 1), memories), float(self.out[end])
-            at = end + int(events.size > 0 and held)
-            held, size = held != bool(events.size), WINDOW if events.size else 2 * size
+                self._pressed(slice(end, end + 1), memories)
+                memories, last = self.at(end), float(self.out[end])
+            size = WINDOW if events.size and held else 2 * size
+            at, held = end + int(events.size > 0 and held), held != bool(events.size)
 
     def answer(self) -> FloatArray:
         """(n,) of the sums."""
@@ -334,21 +331,19 @@ class _UnheldRun:
             values = stage.answer(values, lags)
         return values
 
-    def lost(self, here: slice, memories: list[LagMemory], last: float) -> IntArray:
-        """Steps of some, from their first, at whose ends the tool would pull."""
-        answer = values = self.tool[here]
-        for stage, memory in zip(self.stages, memories, strict=True):
-            answer, _ = stage.part(here, memory).follow(answer)
+    def _lost(self, here: slice, memories: list[LagMemory], last: float) -> IntArray:
+        """Hold the surface in some steps; those, from their first, at whose ends the tool would pull."""
+        answer = self._pressed(here, memories)
         if self.rate:
-            answer = answer + self.rate * slopes(self.durations[here], values, last)
+            answer = answer + self.rate * slopes(self.durations[here], self.out[here], last)
         return np.flatnonzero(answer < np.where(self.touching[here], -self.hold, 0.0))
 
-    def pressed(self, here: slice, memories: list[LagMemory]) -> list[LagMemory]:
-        """Take what comes in as linear in some steps."""
+    def _pressed(self, here: slice, memories: list[LagMemory]) -> FloatArray:
+        """(n,) answer to what comes in, taken as linear, in some steps."""
         values = self.out[here]
         for stage, memory, lags in zip(self.stages, memories, self.lags, strict=True):
             values, lags[:, here] = stage.part(here, memory).follow(values)
-        return self.at(here.stop - 1)
+        return values
 
     def at(self, step: int) -> list[LagMemory]:
         """Memories after a step."""
@@ -373,11 +368,13 @@ class _UnheldRun:
 
     def _freed(self, here: slice, memories: list[LagMemory], last: float) -> tuple[NumberArray, NumberArray]:
         durations = self.durations[here]
+        start = np.concatenate([memory.state for memory in memories] + [np.array([last])] * bool(self.rate))
+        if not start.any():
+            return np.zeros((start.size, durations.size), dtype=start.dtype), np.zeros(start.size)  # it stays at rest
         moves = int((durations > 0.0).argmax())  # a step without a duration tells no rates
         pace = durations[moves] or np.inf
         laws = [(stage.law, stage.ratio[:, here.start + moves] / pace) for stage in self.stages]
         matrix, row = free_motion(laws, self.rate)
-        start = np.concatenate([memory.state for memory in memories] + [np.array([last])] * bool(self.rate))
         speeds, shapes = np.linalg.eig(matrix)
         parts = np.linalg.solve(shapes, start.astype(shapes.dtype))
         states = shapes @ (parts[:, None] * np.exp(np.outer(speeds, np.cumsum(durations))))

@@ -1,6 +1,7 @@
 """Recursions over a history without a loop over its steps."""
 
 import numpy as np
+from scipy.linalg import get_blas_funcs
 
 from wavemodel.arrays import FloatArray, NumberArray
 
@@ -8,12 +9,10 @@ DECAYED = 45.0
 """Beyond this exponent what was there before is gone (e^-45 is 3e-20)."""
 
 
-LARGEST = 600.0
-"""Exponents that may be summed up without overflow."""
-
-
 def decaying_sum(exponent: NumberArray, gain: NumberArray, start: NumberArray | complex = 0.0) -> NumberArray:
     """y_n = e^(-exponent_n) y_(n-1) + gain_n, from y = `start` before the first.
+
+    The steps of all rows, one after the other, are one unit triangular band that BLAS solves.
 
     Parameters
     ----------
@@ -24,36 +23,15 @@ def decaying_sum(exponent: NumberArray, gain: NumberArray, start: NumberArray | 
     start
         (...) y before the first step.
     """
-    whole = exponent.real.sum(axis=-1) <= LARGEST
-    if whole.all():
-        return _at_once(exponent, gain, start)
-    if not whole.any():
-        return _joined(exponent, gain, start)
-    out, start = np.empty_like(gain), np.broadcast_to(start, whole.shape)
-    out[whole] = _at_once(exponent[whole], gain[whole], start[whole])
-    out[~whole] = _joined(exponent[~whole], gain[~whole], start[~whole])
-    return out
-
-
-def _at_once(exponent: NumberArray, gain: NumberArray, start: NumberArray | complex) -> NumberArray:
-    """The sum of e^(c_k) gain_k with the running sum c of the exponents, every term scaled down by what follows it."""
-    growth = np.exp(np.cumsum(exponent, axis=-1))
-    return np.asarray((np.cumsum(gain * growth, axis=-1) + np.asarray(start)[..., None]) / growth)
-
-
-def _joined(exponent: NumberArray, gain: NumberArray, start: NumberArray | complex) -> NumberArray:
-    """Two steps are y -> keep y + gain again: they are joined over distances 1, 2, 4..., while anything is left.
-
-    W. D. Hillis and G. L. Steele 1986, Communications of the ACM 29:1170.
-    """
-    keep, out = np.exp(-np.moveaxis(exponent, -1, 0), order="C"), np.moveaxis(gain, -1, 0).copy()
-    out[0] += keep[0] * start
-    distance = 1
-    while distance < len(out) and np.abs(keep[distance:]).max() > np.exp(-DECAYED):
-        out[distance:] += keep[distance:] * out[:-distance]
-        keep[distance:] *= keep[:-distance]
-        distance *= 2
-    return np.moveaxis(out, 0, -1)
+    keep, out = np.exp(-exponent), np.array(gain, dtype=np.result_type(exponent, gain, np.asarray(start)))
+    if out.size == 0:
+        return out
+    out[..., 0] += keep[..., 0] * start
+    keep[..., 0] = 0.0  # one row after the other: each starts anew
+    band = np.ones((2, out.size), dtype=out.dtype, order="F")
+    np.negative(keep.ravel()[1:], out=band[1, :-1])
+    (solve,) = get_blas_funcs(("tbsv",), (band,))
+    return np.asarray(solve(1, band, out.ravel(), lower=1, diag=1, overwrite_x=1)).reshape(out.shape)
 
 
 def bounded_sum(change: FloatArray, limit: FloatArray, start: float = 0.0) -> FloatArray:

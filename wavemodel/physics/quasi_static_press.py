@@ -6,7 +6,7 @@ driven by force, each instant is solved for the depth at which the body answers 
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeAlias
 
@@ -112,27 +112,37 @@ class PressTrace:
     ----------
     depth
         (n,) of the tool, m.
-    surface
-        (n,) where the tissue under the tool stands, m: at the tool where they touch, else where it has crept back to,
-        in the end where permanent set left it.
     force
         (n,) on the tool, N.
     elastic
         (n,) elastic part of the force, before it relaxes, N.
     touching
         (n,) whether tool and tissue are in contact.
+    stands
+        Works out `surface`, which costs as much as the rest and not every reader needs.
     """
 
     depth: FloatArray
-    surface: FloatArray
     force: FloatArray
     elastic: FloatArray
     touching: BoolArray
+    stands: Callable[[], FloatArray]
+
+    @cached_property
+    def surface(self) -> FloatArray:
+        """(n,) where the tissue under the tool stands, m.
+
+        At the tool where they touch, else where it has crept back to, in the end where permanent set left it.
+        """
+        return self.stands()
 
 
 def joined(pieces: Sequence[PressTrace]) -> PressTrace:
     """One trace of several that follow each other."""
-    return PressTrace(*(np.concatenate([getattr(one, item.name) for one in pieces]) for item in fields(PressTrace)))
+    depth, force, elastic, touching = (
+        np.concatenate([getattr(one, name) for one in pieces]) for name in ("depth", "force", "elastic", "touching")
+    )
+    return PressTrace(depth, force, elastic, touching, lambda: np.concatenate([one.surface for one in pieces]))
 
 
 @dataclass(frozen=True)
@@ -195,9 +205,10 @@ class QuasiStaticPress:
             Whether tool and tissue are one: no lift-off, and any pull.
         """
         met, surface, set_memory = (self.physics.permanent_set or NO_SET).meet(duration, depth, state.surface)
-        elastic, first = self._elastic(self._touched(duration, met, state.touching, held), state)
+        tool, first = self._elastic(self._touched(duration, met, state.touching, held), state)
+        elastic = tool
         if not held and (self.physics.relaxing or self.physics.retardation):
-            elastic, relaxed, second = self._unheld(elastic, state)
+            elastic, relaxed, second = self._unheld(tool, state)
         else:
             relaxed, second = _chain(self.physics.relaxing, elastic, iter(state.options[len(first) :]))
         memories = iter(state.options[len(first) + len(second) :])
@@ -208,12 +219,15 @@ class QuasiStaticPress:
             third.append(memory)
         if not held:
             force = np.where(elastic.touching, np.maximum(force, -self._adhesion.force), 0.0)
-        scale = np.divide(depth - surface, met, out=np.ones_like(depth), where=met != 0.0)
-        below = np.maximum(elastic.depth, 0.0)
-        stands = np.where(elastic.touching, depth, surface + scale * below)
         options = (*first, *second, *third)
         after = PressState(bool(elastic.touching[-1]), set_memory, options, float(_last_touched(elastic, state)[-1]))
-        return PressTrace(depth, stands, force, elastic.force, elastic.touching), after
+
+        def stands() -> FloatArray:
+            scale = np.divide(depth - surface, met, out=np.ones_like(depth), where=met != 0.0)
+            below = np.maximum(self._stood(tool, elastic, state), 0.0)
+            return np.where(elastic.touching, depth, surface + scale * below)
+
+        return PressTrace(depth, force, elastic.force, elastic.touching, stands), after
 
     @cached_property
     def _adhesion(self) -> Adhesion:
@@ -243,10 +257,6 @@ class QuasiStaticPress:
             if self.physics.drains_alike or np.array_equal(segment.touching, touching):
                 break
             touching = segment.touching
-        away = found.free & (found.value > 0.0)
-        if away.any():
-            stood = self._depth_at(tool, found.value, away, state)
-            segment = replace(segment, depth=np.where(found.free & ~away, 0.0, stood))
         second = [(one.last, *np.real(one.state).tolist()) for one in found.memories]
         return segment, replace(segment, force=found.answer), second
 
@@ -266,11 +276,20 @@ class QuasiStaticPress:
         )
 
     def _stages(self, segment: LoadSegment, state: PressState) -> list[LagStage]:
-        stages, memories = [], state.options[len(self.physics.elastic) :]
+        stages: list[LagStage] = []
+        memories = state.options[len(self.physics.elastic) :]
         for option, memory in zip(self.physics.relaxing, memories, strict=False):
+            if stages:
+                segment = replace(segment, force=stages[-1].follow(segment.force)[0])
             stages.append(option.stage(segment, memory))
-            segment = replace(segment, force=stages[-1].follow(segment.force)[0])
         return stages
+
+    def _stood(self, tool: LoadSegment, elastic: LoadSegment, state: PressState) -> FloatArray:
+        """(n,) depth below the surface at which it stands, m; what a tool does not touch is at that of its force."""
+        away = ~elastic.touching & (elastic.force > 0.0)
+        if not away.any():
+            return tool.depth
+        return np.where(elastic.touching | away, self._depth_at(tool, elastic.force, away, state), 0.0)
 
     def _depth_at(self, tool: LoadSegment, force: FloatArray, away: BoolArray, state: PressState) -> FloatArray:
         """(n,) depth below the surface at which it stands, m: the tool's, or where it is away that of its force."""
