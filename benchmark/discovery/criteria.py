@@ -200,6 +200,11 @@ strain elastic laws part by about as much: linear specimens of another's code, p
 missed by 0.08 to 0.17 %. Chosen with these and one more synthetic null (0.03 and 0.05 %), and fifteen true effects of
 seed 59000 (0.5 % and more); it was 0.1 %.
 """
+LONGEST_RUN, SURELY_MISSED = 16, 4.5
+"""That holds of the trials' mean, too, at each row and each run of up to so many of them, less so many standard errors
+(one of thousands of means is off by as much by chance once in a hundred sessions). Chosen with eight synthetic nulls
+(0.17 % of the largest force and less) and two sessions of another's code: a pull-off (3.4 %), a screw's pitch (0.6 %).
+"""
 DEPTH_STEPS = 2.0
 """A play of no more than so many of the smallest changes that the depth shows is none: within its rounding and scatter
 a play holds the depth still, which is how it foretells a force better. Chosen with two synthetic nulls (0.6 and 1.0

@@ -19,6 +19,7 @@ from benchmark.discovery.detection.cells import (
     cell_means,
     cells_of,
     flip_test,
+    misses_nothing,
     projected_residuals,
     share_of_flips,
     sign_patterns,
@@ -75,6 +76,11 @@ def strained(fitted: Fit, form: float = 0.0) -> float:
     if 0.5 * float(z @ z) < form:
         return 1.0
     return float(min(1.0, len(free) * 2.0 * norm.sf(z.max())))
+
+
+def nothing_amiss(fitted: Fit) -> bool:
+    """Whether a model misses nothing, and bends no further for that than its set-up as told allows."""
+    return misses_nothing(fitted) and strained(fitted) >= criteria.STRAINED
 
 
 def _table(fitted: Fit, full: Fit | None = None) -> CellTable:

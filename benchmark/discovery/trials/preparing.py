@@ -64,8 +64,9 @@ def prepare(session: Session, rows: int) -> Study:
     groups = [[r for r in raw if r.trial.condition == name] for name in session.conditions]
     parts = [part for group in groups if group for part in by_height(group, warnings)]
     kept = [each for part in parts for each in by_protocol(session.name, part, warnings)]
-    camera, seen = session.camera, _seen(kept)
+    camera, seen = session.camera if any(map(_over_hole, session.trials)) else None, _seen(kept)
     grid = None if camera is None else _grid(camera, kept, seen, warnings)
+    warnings += _held(session)
     order = {trial.name: number for number, trial in enumerate(session.trials)}
     conditions = tuple(
         _condition(session, group, grid, seen, np.array([order[r.trial.name] for r in group]), rows) for group in kept
@@ -74,6 +75,17 @@ def prepare(session: Session, rows: int) -> Study:
     interval = float(np.median([np.median(np.diff(r.time)) for r in raw]))
     step = float(np.median([_step(r) for r in raw]))
     return Study(conditions, grid, camera.distance if camera else None, interval, step, tuple(warnings))
+
+
+def _over_hole(trial: Trial) -> bool:
+    return trial.support.kind == "hole"
+
+
+def _held(session: Session) -> list[str]:
+    """That markers of specimens whose lower face does not move are left out."""
+    if all(_over_hole(trial) or trial.markers is None for trial in session.trials):
+        return []
+    return ["the markers of trials without a hole are left out: the lower face, on which they are, is held there"]
 
 
 def _scatter(raw: Sequence[RawTrial]) -> list[str]:
@@ -168,7 +180,7 @@ def _raw(session: Session, trial: Trial, warnings: list[str]) -> RawTrial:
     pieces = tuple(segments(time, depth))
     if not any(piece.kind == "press" for piece in pieces):
         raise InputError(f"{place}: the depth never rises by a tenth of its range; a press is needed.")
-    seen = marker_frames(trial, session.camera) if session.camera is not None else None
+    seen = marker_frames(trial, session.camera) if session.camera is not None and _over_hole(trial) else None
     frames, markers = seen if seen is not None else (None, None)
     return RawTrial(
         trial, time, depth, force, acceleration(time, depth), frames, markers, pieces, steadied=depth is not read

@@ -123,7 +123,7 @@ def test_loading_alone_names_nothing_that_needs_more(session_of, quick_session, 
 @pytest.mark.parametrize("tiny", [False, True])
 def test_the_verdict_is_told_whether_the_misfit_is_nothing(session_of, monkeypatch, tiny):
     told = []
-    monkeypatch.setattr(workflow, "misses_nothing", lambda fitted: tiny)
+    monkeypatch.setattr(workflow, "nothing_amiss", lambda fitted: tiny)
     monkeypatch.setattr(workflow, "verdict", lambda facts: told.append(facts) or verdict(facts))
     findings(session_of(trials=4, speeds=(3e-3,)), settings=SETTINGS)
     assert [facts.tiny for facts in told] == [tiny]
@@ -153,7 +153,7 @@ def test_what_is_measured_apart_from_the_trials_leaves_of_the_answer_what_stood(
 
 
 def test_an_effect_without_which_nothing_is_missed_is_not_named(session_of, monkeypatch):
-    monkeypatch.setattr(workflow, "misses_nothing", lambda fitted: True)
+    monkeypatch.setattr(workflow, "nothing_amiss", lambda fitted: True)
     answer = findings(session_of(force=fading, noise=0.003), settings=SETTINGS).discovery
     assert (answer.verdict, answer.effects, answer.remains) == ("cannot_tell", (), ())
     assert any(each.slugs == ("viscoelastic_relaxation",) for each in answer.candidates)

@@ -8,7 +8,6 @@ import pytest
 from scipy.signal import lfilter
 
 from benchmark.discovery.criteria import Settings
-from benchmark.discovery.detection import cells
 from benchmark.discovery.detection.cells import (
     Cell,
     CellTable,
@@ -184,13 +183,60 @@ def test_two_newtons_of_eight_are_beyond_the_tolerance_whatever_their_signs():
         assert not channel_sizes(small, each)[0].within
 
 
+def of_force(residuals, *, layout=None, condition=None, peak=2.0):
+    """A model of force (R, n) N, of trials of so large forces."""
+    rows = residuals.shape[1]
+    around = SimpleNamespace(
+        phase=np.zeros(rows, dtype=int),
+        cycle=np.ones(rows, dtype=int),
+        part=np.zeros(rows, dtype=int),
+        signals=np.zeros((len(residuals), rows, 1)),
+        count=np.ones((len(residuals), rows, 1)),
+    )
+    groups = np.zeros(len(residuals), dtype=int) if condition is None else condition
+    largest = np.full((rows, 1), 0.5 * peak)
+    largest[-1] = peak
+    trials = [
+        SimpleNamespace(condition=group, signals=largest, count=np.ones((rows, 1)), left=residual)
+        for group, residual in zip(groups.tolist(), residuals, strict=True)
+    ]
+    study = SimpleNamespace(layout=layout, conditions=(around,) * (groups.max() + 1), channels=("force_z",))
+    predicted = [largest - residual[:, None] for residual in residuals]
+    model = SimpleNamespace(
+        problem=SimpleNamespace(study=study, trials=trials), signals=lambda vector, nuisance: predicted
+    )
+    return SimpleNamespace(model=model, vector=None, nuisance=None)
+
+
 @pytest.mark.parametrize(
     ("layout", "missed", "expected"), [(None, 4.9e-3, True), (None, 5.1e-3, False), ("grid", 4.9e-3, False)]
 )
-def test_a_quarter_of_a_percent_of_the_largest_force_is_nothing_where_force_alone_is_measured(
-    monkeypatch, layout, missed, expected
-):
-    monkeypatch.setattr(cells, "_misses", lambda fitted: {"force_z": missed})
-    trials = [SimpleNamespace(signals=np.array([[peak, 9.0]])) for peak in (1.0, 2.0)]
-    problem = SimpleNamespace(trials=trials, study=SimpleNamespace(layout=layout))
-    assert misses_nothing(SimpleNamespace(model=SimpleNamespace(problem=problem))) is expected
+def test_a_quarter_of_a_percent_of_the_largest_force_is_nothing_where_force_alone_is_measured(layout, missed, expected):
+    assert misses_nothing(of_force(np.full((6, 80), missed), layout=layout)) is expected
+
+
+def test_what_is_short_or_changes_its_sign_is_not_lost_in_the_mean_of_a_cell():
+    """A pull-off of 0.05 N in three rows of 80; a pitch of 0.02 N; each is 1 % and more of the largest force."""
+    noise = np.random.default_rng(0).normal(0.0, 2e-3, (6, 80))
+    pull, pitch = np.zeros(80), 0.02 * np.sin(2.0 * np.pi * np.arange(80) / 8.0)
+    pull[40:43] = -0.05
+    assert misses_nothing(of_force(noise))
+    for missed in (pull, pitch):
+        assert abs(missed.mean()) < 5e-3
+        assert not misses_nothing(of_force(noise + missed))
+        other = np.repeat([0, 1], 3)
+        assert not misses_nothing(of_force(noise + np.outer(other, missed), condition=other))
+
+
+def test_a_run_of_rows_shows_what_no_row_does():
+    """0.02 N in eight rows, where trials scatter by 0.02 N a row."""
+    noise, low = np.random.default_rng(1).normal(0.0, 0.02, (6, 80)), np.zeros(80)
+    low[40:48] = -0.05
+    assert misses_nothing(of_force(noise))
+    assert not misses_nothing(of_force(noise + low))
+
+
+def test_noise_of_trials_is_no_miss():
+    """30 sessions of 0.5 % of the largest force a row; the mean of a cell of each trial is a tenth of that."""
+    rng = np.random.default_rng(2)
+    assert all(misses_nothing(of_force(rng.normal(0.0, 0.01, (6, 400)))) for _ in range(30))

@@ -17,6 +17,7 @@ from benchmark.discovery.detection.disagreement import (
     combined,
     detect,
     exchangeable,
+    nothing_amiss,
     shared_by_chance,
     shared_misfit,
     smallest_visible,
@@ -52,6 +53,14 @@ def bent(*vector, told=(0.0, 0.0, 0.0)):
     model = SimpleNamespace(problem=SimpleNamespace(shapes=names))
     precision = np.array([0.1, 400.0, 1e4])
     return SimpleNamespace(model=model, vector=np.array(vector), prior_mean=np.array(told), precision=precision)
+
+
+@pytest.mark.parametrize(
+    ("missed", "bends", "expected"), [(True, 0.0, True), (False, 0.0, False), (True, -0.05, False)]
+)
+def test_a_base_that_bends_too_far_to_miss_nothing_is_amiss(monkeypatch, missed, bends, expected):
+    monkeypatch.setattr(disagreement, "misses_nothing", lambda fitted: missed)
+    assert nothing_amiss(bent(0.0, 0.0, bends)) is expected
 
 
 def test_a_base_is_strained_by_its_priors_and_the_modulus_is_free():

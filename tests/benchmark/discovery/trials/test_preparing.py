@@ -1,6 +1,8 @@
 """Sessions that cannot be used are refused, and those of few trials name nothing."""
 
 import re
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,7 +10,7 @@ import pytest
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.discovery.trials.rows import depth_step
 from benchmark.errors import InputError
-from benchmark.files import load_session
+from benchmark.files import Camera, load_session
 
 
 def rewrite(folder, change):
@@ -130,3 +132,18 @@ def test_a_depth_whose_sensor_scatters_is_prepared_steady(tmp_path, quick_sessio
     assert 1e3 * study.depth_step == pytest.approx(0.02, rel=0.2)
     (said,) = set(study.warnings) - set(smooth.warnings)
     assert re.match(r"the depth of 4 of 4 trials scatters by (19|20|21) um from row to row", said)
+
+
+def test_markers_of_a_face_that_is_held_are_left_out(session_of):
+    """Also those on its upper face: nothing of a session says so, and as a lower face they cannot be understood."""
+    session = session_of(trials=6, speeds=(3e-3,))
+    frames = np.repeat([0.0, 0.5, 1.0], 4)
+    places = np.tile([[-3e-3, -3e-3], [3e-3, -3e-3], [-3e-3, 3e-3], [3e-3, 3e-3]], (3, 1))
+    number, moved = np.tile(np.arange(4), 3), places + 1e-4 * frames[:, None]
+    markers = SimpleNamespace(time=frames, marker=number, x=moved[:, 0], y=moved[:, 1])
+    filmed = tuple(replace(trial, markers=markers) for trial in session.trials)
+    camera = Camera(marker_rows=2, marker_columns=2, marker_spacing=6e-3)
+    study = prepare(replace(session, trials=filmed, camera=camera), 100)
+    assert study.layout is None
+    assert [text for text in study.warnings if "held there" in text]
+    assert not [text for text in study.warnings if "no four markers" in text]
