@@ -230,13 +230,40 @@ def _pressed(motion: Motion, added: Sequence[Added], law: Law, physics: Physics)
     """
     body = PressedBody(law, motion.time - motion.time[0] + FIRST_STEP, physics)
     depth, damping = _driven(motion, added, body), physics.damping
-    if motion.record is None or damping is None or damping.retardation == 0.0:
+    if motion.record is None:
         return body.trace(depth)
+    if damping is None or damping.retardation == 0.0:
+        return _torn_within(body.trace(depth), physics)
     free, step = replace(body, physics=replace(physics, damping=None)), motion.record.interval
     before, after = (free.trace(_driven(motion.before(each), added, body)).elastic for each in (step, -step))
     trace = free.trace(depth)
     force = trace.force + damping.retardation * (after - before) / (2.0 * step)
-    return replace(trace, force=np.where(trace.touching, np.maximum(force, np.minimum(trace.force, 0.0)), trace.force))
+    force = np.where(trace.touching, np.maximum(force, np.minimum(trace.force, 0.0)), trace.force)
+    return _torn_within(replace(trace, force=force), physics)
+
+
+def _torn_within(trace: PressTrace, physics: Physics) -> PressTrace:
+    """Rows that are means, of a tissue that lets go within one: the pull of its part before that.
+
+    Force and elastic force go on over the depth as between the two rows before, and the tool from the middle between
+    two rows to the next.
+    """
+    if physics.adhesion is None or physics.adhesion.force == 0.0:
+        return trace
+    gone = 1 + np.flatnonzero(trace.touching[:-1] & ~trace.touching[1:])
+    depth, force = trace.depth, trace.force.copy()
+    gone = gone[(gone > 1) & (gone < depth.size - 1)]
+    gone = gone[(depth[gone - 2] > depth[gone - 1]) & (depth[gone] > depth[gone + 1])]
+    earlier, last = depth[gone - 2], depth[gone - 1]
+    slope, stiffness = ((part[gone - 2] - part[gone - 1]) / (earlier - last) for part in (trace.force, trace.elastic))
+    left = np.divide(physics.adhesion.force + trace.elastic[gone - 1], stiffness, where=stiffness > 0.0, out=0.0 * last)
+    torn = np.clip(last - left, depth[gone], last)
+    for row in (gone - 1, gone):
+        top, bottom = 0.5 * (depth[row - 1] + depth[row]), 0.5 * (depth[row] + depth[row + 1])
+        until = np.clip(torn, bottom, top)
+        pulled = trace.force[gone - 1] + slope * (0.5 * (top + until) - last)
+        force[row] = np.where(until > bottom, (top - until) / (top - bottom) * pulled, force[row])
+    return replace(trace, force=force)
 
 
 @dataclass(frozen=True, eq=False)

@@ -69,7 +69,7 @@ def _starts(context: TrialContext) -> tuple[dict[str, float], ...]:
     following = {"tear": 0.0, "reach": 0.2 * depth, "rise": RISE}
     return (
         *(tearing | {"reach": share * depth, "rise": rise} for share in (0.1, 0.2, 0.4) for rise in (RISE, 0.9)),
-        *(following | {"adhesion_force": share * peak} for share in (0.03, 0.1, 0.3)),
+        *(following | {"adhesion_force": share * peak} for share in (0.015, 0.03, 0.06, 0.1, 0.2, 0.3)),
     )
 
 

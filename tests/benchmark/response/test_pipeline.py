@@ -86,6 +86,33 @@ def test_the_damping_of_rows_that_are_means_is_the_mean_of_the_damping(given, ex
     assert np.abs(between - exact)[1:-1].max() > 1e-2 * size
 
 
+def _lifted(time):
+    """Pressed by 1 mm and lifted to 1 mm above within 2 s, m, and kept there."""
+    return np.where(time < 2.0, 1e-3 * np.cos(0.5 * np.pi * time), -1e-3)
+
+
+@pytest.mark.parametrize("pull", np.linspace(0.3, 0.6, 31))
+@pytest.mark.parametrize("damping", [None, 1e-9])
+def test_a_tissue_that_lets_go_within_a_row_pulls_in_its_part_before(pull, damping):
+    """Against the means of a record in steps of 10 us."""
+    fine = np.arange(0.0, 3.0, 1e-5)
+    exact = np.where(_lifted(fine) > -pull / 1000.0, _law(_lifted(fine)), 0.0)
+    sums = np.concatenate([[0.0], np.cumsum(exact)])
+    edges = np.round(BORDERS / 1e-5).astype(int)
+    means = np.diff(sums[edges]) / np.diff(edges)
+    raw = np.arange(0.0, 3.001, 0.001)
+    record = DepthRecord(raw, _lifted(raw), BORDERS)
+    motion = Motion(0.5 * (BORDERS[1:] + BORDERS[:-1]), record.means(0.0), np.zeros(60), record)
+    values = {"adhesion": {"tear": 0.0, "reach": 1e-3, "rise": 0.1, "adhesion_force": float(pull)}}
+    if damping:
+        values["viscous_damping"] = {"damping_time": damping, "drag": 0.0, "drag_growth": 0.0, "power": 1.0}
+    pipeline = TrialPipeline(AROUND, tuple(effect for effect in catalogue() if effect.slug in values))
+    found = pipeline.readings(ForceAlone(_law), values, motion).force
+    np.testing.assert_allclose(found[:-1], means[:-1], atol=0.02 * pull)
+    alone = pipeline.readings(ForceAlone(_law), values, replace(motion, record=None)).force
+    assert set(np.flatnonzero(alone < 0.0)) <= set(np.flatnonzero(_law(motion.depth) > -pull))
+
+
 class Sheet:
     """An elastic answer whose lower face moves by the depth over the distance from the tool's axis."""
 
