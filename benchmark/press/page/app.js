@@ -1,27 +1,34 @@
 "use strict";
 // The page: what the controls mean, what is drawn each frame, what is read out.
 (() => {
-  const SIDE = 49e-3, SPACING = 1e-3, GAP = 9, PLATE = 1.6, SECONDS = 10, CENTRE = SIDE / 2;
+  const SIDE = 49e-3, SPACING = 1e-3, GAP = 9, PLATE = 1.6, SECONDS = 10, CENTRE = SIDE / 2, MOST_NAME = 0.24, MIN_NAME = 90, STILL = 1e-4;
   const SKIN = { epidermis: "#f6cfb0", dermis: "#e9a493", subcutaneous_fat: "#f3dc9a", fat: "#f3dc9a", gel: "#c9d7dd", skin: "#efc0ab" };
   const OTHERS = ["#cfd8dc", "#bccbd2", "#a9bdc7", "#d8d2c4"];
   const get = (id) => document.getElementById(id);
   const data = JSON.parse(get("data").textContent), calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
   const canvas = get("view"), grid = Wave.grid(SIDE, SIDE, SPACING), P = grid.xs.length, Q = grid.ys.length;
   const rows = grid.ys.slice(), shades = new Map();
-  const shade = (name) => shades.get(name) ?? shades.set(name, getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim()).get(name);
+  // A colour by its name; on paper the light one, which the page's first rule has.
+  const colours = () => (state.paper ? document.styleSheets[0].cssRules[0].style : getComputedStyle(document.documentElement));
+  const shade = (name) => shades.get(name) ?? shades.set(name, colours().getPropertyValue("--" + name).trim()).get(name);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { shades.clear(); state.told = {}; });
   const value = (id) => Number(get(id).value), chosen = (name) => document.querySelector(`input[name="${name}"]:checked`).value;
   const mm = (metres) => 1e3 * metres, FLAT = new Float64Array(P * Q);
 
-  let renderer;
-  try { renderer = new Scene.Renderer(canvas); } catch (error) { get("note").textContent = `No drawing here: ${error.message}.`; }
+  let renderer, undrawn = "";
+  try { renderer = new Scene.Renderer(canvas); } catch (error) { undrawn = `No drawing here: ${error.message}.`; }
   const gl = renderer?.gl, camera = new Scene.Camera();
   const state = {
     renderer, bench: null, specimen: null, bodies: null, slabs: [], plate: null, sheet: null, ribbons: [], tools: [], faces: null, fem: null, values: null,
-    paused: false, slow: false, replay: null, demo: true, last: 0, active: 0, cost: 0, errorScale: 0.0025, traces: [], frames: [], orbit: null, pointers: new Map(), script: null, told: {}, read: 0,
+    paused: false, slow: false, replay: null, demo: true, last: 0, active: 0, cost: 0, errorScale: 0.0025, traces: [], frames: [], orbit: null, pointers: new Map(), script: null, told: {}, read: 0, paper: false, rest: { at: [], since: 0, told: true },
   };
   // A text that has not changed costs nothing: without a graphics card every change is a picture drawn anew.
   const tell = (id, text) => { if (state.told[id] !== text) { state.told[id] = text; get(id).textContent = text; } };
+
+  const named = (id, text) => { if (state.told[id + "-name"] !== text) { state.told[id + "-name"] = text; get(id).setAttribute("aria-label", text); } };
+  const stack = () => state.specimen.layers.map(({ name, thickness_m }) => [name.replaceAll("_", " "), `${+mm(thickness_m).toPrecision(3)} mm`]);
+
+  const inOneLine = ([name, thick]) => `\u2068${name}\u2069 ${thick}`;  // a name from right to left keeps its number behind it
 
   // ---- what is pressed
   function choose(index) {
@@ -34,6 +41,14 @@
     get("key-after").hidden = !one.after;
     if (one.after) get("effect").textContent = "with " + one.effects.map((name) => name.replaceAll("_", " ")).join(", ");
     get("remarks").textContent = one.remarks.join(" ");
+    get("stack").textContent = `Layers from the top: ${stack().map(inOneLine).join(", ")}.`;
+    state.told.fit = "";
+    const word = (kind, textContent) => Object.assign(document.createElement(kind), { textContent });
+    get("layers").replaceChildren(...stack().map(([name, thick]) => {
+      const label = document.createElement("span");
+      label.append(word("bdi", name), word("i", thick));
+      return label;
+    }));
     const own = one.memory;
     get("fade").value = own.strength.length ? 0 : get("fade").value;
     get("fade").disabled = own.strength.length > 0;
@@ -48,6 +63,7 @@
       if (!state.tools.length) state.tools = Array.from({ length: Hands.MOST }, () => new Scene.Cylinder(gl));
     }
     restart();
+    aim();  // a tool that presses goes to the same share of what this tissue can be pressed to, which is what Target says
   }
 
   function memory(of) {
@@ -66,6 +82,7 @@
       tissues.published = new Wave.InteractiveTissue(new Wave.PublishedBody(data.published[kind]), grid, Hands.MOST, {});
     }
     const hands = state.bench?.hands;
+    if (state.script) { state.script = null; hands[0].on = false; }  // what plays ends with the tissue it plays on
     state.bench = new Hands.Bench(tissues, bodies.after && chosen("state") === "after" ? "after" : "wave");
     const kind = get("task").value;
     state.bench.task = kind && !state.replay ? new Hands.Task(kind, SIDE, bodies.wave.deepest) : null;
@@ -84,13 +101,14 @@
 
   function shownSettings() {
     const force = chosen("drive") === "force";
-    get("target-shown").textContent = force ? `${goal().toPrecision(3)} N` : `${mm(goal()).toFixed(2)} mm`;
-    get("speed-shown").textContent = `${mm(pace()).toPrecision(2)} mm/s`;
-    get("cut-shown").textContent = get("follow").checked ? "at the tool" : value("cut") ? `${Math.round(0.49 * value("cut"))} mm` : "none";
-    get("peel-shown").textContent = value("peel") ? `${((GAP * value("peel")) / 100).toFixed(1)} mm` : "none";
+    const say = (id, text) => { get(`${id}-shown`).textContent = text; get(id).setAttribute("aria-valuetext", text); };
+    say("target", force ? `${goal().toPrecision(3)} N` : `${mm(goal()).toFixed(2)} mm`);
+    say("speed", `${mm(pace()).toPrecision(2)} mm/s`);
+    say("cut", get("follow").checked ? "at the tool" : value("cut") ? `${Math.round(0.49 * value("cut"))} mm` : "none");
+    say("peel", value("peel") ? `${((GAP * value("peel")) / 100).toFixed(1)} mm` : "none");
     const own = state.specimen.memory.strength, share = own.reduce((sum, part) => sum + part, 0);
-    get("fade-shown").textContent = own.length ? `${Math.round(100 * share)} %, its own` : value("fade") ? `${value("fade")} % fades` : "none";
-    get("tau-shown").textContent = own.length ? `${Math.round(Math.min(...state.specimen.memory.time_s))} s` : `${tau().toPrecision(2)} s`;
+    say("fade", own.length ? `${Math.round(100 * share)} %, its own` : value("fade") ? `${value("fade")} % fades` : "none");
+    say("tau", own.length ? `${Math.round(Math.min(...state.specimen.memory.time_s))} s` : `${tau().toPrecision(2)} s`);
     get("figure").hidden = get("captions").hidden = !get("beside").checked;
   }
 
@@ -140,11 +158,12 @@
 
   function drawn(now) {
     renderer.resize();
-    if (renderer.software) renderer.ground = [...Scene.rgb(shade("raised")), 1];
+    if (renderer.software) renderer.ground = [...Scene.rgb(shade(state.paper ? "paper" : "raised")), 1];
     renderer.clear();
     const low = Scene.rgb(shade("fem")), high = Scene.rgb(shade("wave")), beside = state.bench.tissues.published;
     const layers = state.specimen.layers, hole = state.specimen.support === "hole", total = mm(layers.reduce((sum, layer) => sum + layer.thickness_m, 0));
-    Object.assign(camera, { target: [mm(CENTRE) + (beside ? -2.5 : canvas.clientWidth < 480 ? 0 : 2.2), mm(CENTRE) * 1.15, beside ? -7 : 0.05 * total], size: (beside ? 1.08 : 1) * mm(SIDE) });
+    get("layers").hidden = Boolean(beside);
+    fit(beside, total);
     renderer.begin(camera, 0, beside ? 0.5 : 1, low, high);
     const lift = (GAP * value("peel")) / 100, size = P * Q, count = layers.length;
     let depth = 0;
@@ -164,28 +183,38 @@
     }
     targets(lift * (count - 1));
     tools(state.bench.shown, lift * (count - 1));
-    get("layers").hidden = Boolean(beside);
     names(now.cut, lift, beside ? 0.5 : 1);
     if (beside) published(beside, low, high);
   }
 
-  // The layers' names beside the right end of the cut.
+  // The camera far enough away for the block, cut in the middle or whole, to stand in its part of the picture beside the names of its layers.
+  function fit(beside, total) {
+    const { clientWidth, clientHeight } = renderer.size, wide = clientWidth * (beside ? 0.5 : 1), labels = [...get("layers").children];
+    const front = !beside && get("follow").checked ? CENTRE : 0, key = [data.specimens.indexOf(state.specimen), clientWidth, clientHeight, Boolean(beside), front].join();
+    if (key !== state.told.fit) {
+      Object.assign(state.told, { fit: key, names: "" });
+      labels.forEach((label) => { label.style.maxWidth = ""; label.style.left = "0"; });
+      const room = Math.min(Math.max(...labels.map((label) => label.offsetWidth)), MOST_NAME * wide), right = room ? 1 - (2 * (room + 14)) / wide : 0.95;
+      const corners = [0, SIDE].flatMap((x) => [front, SIDE].flatMap((y) => [0, -total - PLATE].map((z) => [mm(x), mm(y), z])));
+      state.fit = new Scene.Camera().fit(corners, [mm(CENTRE), mm(CENTRE) * 1.15, beside ? -7 : 0.05 * total], mm(SIDE), wide / clientHeight, -0.95, right);
+    }
+    Object.assign(camera, state.fit);
+  }
+
+  // The layers' names beside the right end of the cut, as wide as the picture lets them be.
   function names(cut, lift, share) {
     const { layers } = state.specimen, labels = get("layers"), { clientWidth, clientHeight } = renderer.size, wide = clientWidth * share, high = clientHeight;
-    const key = [state.specimen.tissue, cut, lift, wide, high, camera.azimuth, camera.elevation, camera.zoom, camera.target].join();
+    const key = [data.specimens.indexOf(state.specimen), cut, lift, wide, high, camera.azimuth, camera.elevation, camera.zoom, camera.target, camera.size].join();
     if (key === state.told.names) return;
     state.told.names = key;
-    if (labels.children.length !== layers.length || labels.dataset.of !== state.specimen.tissue) {
-      labels.replaceChildren(...layers.map(({ name, thickness_m }) => Object.assign(document.createElement("span"), { textContent: `${name.replaceAll("_", " ")} ${+mm(thickness_m).toPrecision(3)} mm` })));
-      labels.dataset.of = state.specimen.tissue;
-    }
     let depth = 0, free = -Infinity;
     layers.forEach((layer, l) => {
       const middle = -(depth + 0.5 * mm(layer.thickness_m)) + lift * (layers.length - 1 - l), at = camera.project([mm(SIDE), mm(cut), middle], wide / high);
       depth += mm(layer.thickness_m);
       const y = Math.max(0.5 * (1 - at[1]) * high, free + 15);
       free = y;
-      Object.assign(labels.children[l].style, { left: `${0.5 * (1 + at[0]) * wide + 6}px`, top: `${y - 9}px` });
+      const left = Math.min(Math.max(0.5 * (1 + at[0]) * wide + 6, 6), wide - MIN_NAME);
+      Object.assign(labels.children[l].style, { left: `${left}px`, top: `${y - 9}px`, maxWidth: `${wide - left - 6}px` });
     });
   }
 
@@ -225,10 +254,10 @@
   }
 
   function published(tissue, low, high) {
-    const size = P * Q, faces = tissue.draw(new Float64Array(size), grid.xs, rows), most = Math.abs(tissue.body.coefficient);
+    const size = P * Q, faces = tissue.draw(new Float64Array(size), grid.xs, rows), wrong = chosen("colour") === "error", most = state.bench.shown.body.deepest;
     renderer.begin(camera, 0.5, 1, low, high);
     state.sheet.fill(grid.xs, rows, faces, faces.map((deflection) => deflection / most), 0, 0, 0, -0.5);
-    renderer.draw(state.sheet, Scene.rgb(SKIN.skin), { mode: 0, lines: 8 });
+    renderer.draw(state.sheet, Scene.rgb(SKIN.skin), wrong ? { mode: 2 } : { mode: 0, lines: 8 });  // it has no error: nothing asks it for one
     tools(tissue, 0);
   }
 
@@ -244,10 +273,11 @@
     tell("fem-force", now.compared ? fem.toFixed(2) : "–");
     tell("error", now.compared && now.depth > 1e-5 ? (100 * now.share).toFixed(2) : "–");
     scale(now);
+    hear(now, held, force, fem);
     const two = bench.busy > 1 && state.bench.tissues.fem ? "Finite elements were run for one tool: none of theirs with two." : "";
     const assumed = bench.lead === "after" && now.compared ? "The finite elements are those of the model as it was assumed: the error shows the effect." : "";
     const shallow = bench.tissues.published && tool.depth > bench.tissues.published.body.deepest ? "Eq. (8) of the article has no answer deeper than 1 mm." : "";
-    tell("note", state.said ? state.said : state.replay ? "Replay" : bench.refused ? `The tool stays where it was: ${bench.refused}.` : shallow || (bench.task ? asked(bench.task) : two || assumed));
+    tell("note", state.said ? state.said : state.replay ? "Replay" : bench.refused ? `The tool stays where it was: ${bench.refused}.` : shallow || (bench.task ? asked(bench.task) : two || assumed || undrawn));
     if (state.manual || turn % 12 === 0) { trace(); law(now); }
     const fast = state.cost, slow = state.specimen.fem;
     if (turn % 30 === 0 && fast > 0) {
@@ -255,6 +285,17 @@
         + (slow ? ` Finite elements, when this page was made: <b>${(1e3 * slow.wall_s / slow.levels).toFixed(0)} ms</b> for each of ${slow.levels} depths, ${slow.unknowns.toLocaleString("en")} unknowns.` : "")
         + (renderer?.rough || renderer?.detail < 0.6 ? " Drawn with fewer points and pixels than computed, since pictures came too slowly." : "");
     }
+  }
+
+  // Told to who listens: the figures once a press has come to rest for a second, none while it moves.
+  function hear(now, held, force, fem) {
+    const { rest, bench } = state, at = bench.shown.tools.filter((tool) => tool.phase === "pressed").flatMap(({ x, y, depth }) => [x, y, depth]);
+    const moved = at.length !== rest.at.length || at.some((part, k) => Math.abs(part - rest.at[k]) > STILL);
+    if (moved) { Object.assign(rest, { at, since: state.last, told: false }); tell("told", ""); }
+    if (!at.length || rest.told || state.last - rest.since < 1e3) return;
+    rest.told = true;
+    const versus = now.compared ? `; finite elements ${fem.toFixed(2)} N, wave's largest error ${(100 * now.share).toFixed(2)} % of depth` : "";
+    tell("told", `Force ${force.toFixed(2)} N at ${mm(held).toFixed(2)} mm${versus}.`);
   }
 
   function scale(now) {
@@ -299,7 +340,7 @@
     return { line, dot };
   }
 
-  const LINES = [["after", "incomplete"], ["fem", "fem"], ["wave", "wave"]];
+  const LINES = [["after", "incomplete"], ["fem", "fem"], ["wave", "wave"]], CALLED = { after: "with the effect", fem: "by finite elements", wave: "by the wave" };
   const ladder = (most) => [1, 2, 5, 10].map((step) => step * 10 ** Math.floor(Math.log10(Math.max(most, 1e-3)))).find((step) => step >= most);
 
   // Where a moment stands on the trace: one that the bench led, at the bench's own time, as its measured force does.
@@ -312,12 +353,15 @@
     for (const [name, colour] of LINES) if (bench.tissues[name]) line(traces.map((one) => [instant(one), one[name]]), colour, name === "fem" ? 3.2 : 1.6);
     if (measured.length) line(measured.filter(([time]) => time > bench.time - SECONDS), "measured", 1.4);
     for (const [at, force] of state.asked?.points ?? []) if (at > bench.time - SECONDS) dot(at, force, "fem");
+    const peak = (name) => Math.max(...traces.map((one) => one[name] ?? 0)).toFixed(2);
+    named("trace", `Force in N, last 10 s: at most ${LINES.filter(([name]) => bench.tissues[name]).map(([name]) => `${peak(name)} ${CALLED[name]}`).join(", ")}.`);
   }
 
   function law(now) {
     const { bench } = state, names = LINES.filter(([name]) => bench.tissues[name]);
     const most = Math.max(...names.map(([name]) => bench.tissues[name].body.force.at(-1)));
     const { line, dot } = chart("law", [0, mm(now.deepest)], ladder(most), `${mm(now.deepest).toFixed(1)} mm`);
+    named("law", `Force in N over depth: ${names.map(([name]) => `${bench.tissues[name].body.force.at(-1).toFixed(2)} at ${mm(bench.tissues[name].body.deepest).toFixed(1)} mm ${CALLED[name]}`).join(", ")}.`);
     for (const [name, colour] of names) {
       const { force, deepest } = bench.tissues[name].body, last = force.length - 1;
       line(Array.from({ length: 33 }, (_, k) => [(mm(deepest) * k) / 32, force[Math.round((k * last) / 32)]]), colour, name === "fem" ? 3.2 : 1.6);
@@ -339,6 +383,31 @@
     read(now);
     if (!state.manual) requestAnimationFrame(tick);
   }
+
+  // ---- on paper: light colours, and the tissue as a flat picture with its names, which a 3-D one is not printed as
+  function paper(on) {
+    state.paper = on;
+    shades.clear();
+    state.told = {};
+    const now = computed();
+    if (renderer) {
+      drawn(now);
+      const still = get("still"), context = still.getContext("2d"), { clientWidth, clientHeight } = renderer.size;
+      Object.assign(still, { width: 2 * clientWidth, height: 2 * clientHeight });
+      context.scale(2, 2);
+      context.drawImage(canvas, 0, 0, clientWidth, clientHeight);
+      Object.assign(context, { font: `12.5px ${getComputedStyle(document.body).fontFamily}`, fillStyle: shade("muted") });
+      if (get("layers").offsetParent) stack().forEach(([name, thick], l) => {
+        const { left, top, maxWidth } = get("layers").children[l].style, fits = (words) => context.measureText(words).width <= parseFloat(maxWidth);
+        let words = inOneLine([name, thick]);
+        for (let kept = name.length - 1; kept > 0 && !fits(words); kept--) words = inOneLine([`${name.slice(0, kept)}…`, thick]);
+        context.fillText(words, parseFloat(left), parseFloat(top) + 12);
+      });
+    }
+    scale(now); trace(); law(now);
+  }
+  addEventListener("beforeprint", () => paper(true));
+  addEventListener("afterprint", () => paper(false));
 
   // ---- hands
   function place(event) {

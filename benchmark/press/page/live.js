@@ -45,9 +45,9 @@
     if (news.depth.length) get("live-depth").textContent = shown(1e3 * news.depth.at(-1)[1]);
     if (news.force_lost !== undefined) get("live-lost").textContent = news.force_lost;
     if (news.camera) seen(news.camera);
-    const silent = news.silent_s ? `nothing new for ${news.silent_s.toFixed(0)} s: the recording has stopped, or nothing reaches its file` : "";
+    const silent = news.silent_s ? "nothing new: the recording has stopped, or nothing reaches its file" : "", since = silent && `, silent for ${news.silent_s.toFixed(0)} s`;
     const doing = news.faults.length ? news.faults.at(-1) : news.ended ? "ended" : silent || news.doing || "begins";
-    return say(title(news), `${live.newest.toFixed(1)} s, ${doing}`, news.faults.length || silent);
+    return say(title(news), doing, news.faults.length || silent, `${live.newest.toFixed(1)} s${since},`);
   }
 
   const title = ({ trial, synthetic }) => `${trial.replace(/\.mcap$/, "")}${synthetic ? " (simulated)" : ""}`;
@@ -60,9 +60,11 @@
     return say(title(last), `${last.seconds.toFixed(1)} s, ${end}. Waiting for the next trial in ${where}`, last.faults.length);
   }
 
-  function say(head, rest, bad) {
+  // The clock stands apart: what a trial does is told to who listens when it changes, not ten times a second.
+  function say(head, rest, bad, clock = "") {
     get("live-trial").textContent = head;
-    get("live-doing").textContent = rest;
+    get("live-time").textContent = clock;
+    if (get("live-doing").textContent !== rest) get("live-doing").textContent = rest;
     get("live").classList.toggle("fault", Boolean(bad));
   }
 

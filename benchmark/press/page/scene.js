@@ -81,6 +81,19 @@ const Scene = (() => {
       return { eye, matrix: new Float32Array([0, 1, 2].flatMap((axis) => rows.map((row) => row[axis])).concat(last)) };
     }
 
+    // Steps back and aside, no closer than `size` asks for, until points stand between two places of the picture's width
+    // (-1 to 1); gives the target and size.
+    fit(points, target, size, aspect, left, right) {
+      Object.assign(this, { target, size });
+      for (let turn = 0; turn < 12; turn++) {
+        const at = points.map((point) => this.project(point, aspect)[0]), low = Math.min(...at), high = Math.max(...at), view = this.place(aspect);
+        this.size *= Math.max((high - low) / (right - left), size / this.size);
+        const aside = (0.5 * (low + high - left - right)) * view.tan * aspect * view.far;
+        this.target = this.target.map((part, axis) => part + aside * view.right[axis]);
+      }
+      return { target: this.target, size: this.size };
+    }
+
     // Where a point is in the picture, -1 to 1 each way.
     project(point, aspect) {
       const { eye, back, right, up, tan } = this.place(aspect), way = subtract(point, eye), ahead = -dot(back, way);

@@ -32,6 +32,7 @@ FLAGS = [
     "--enable-unsafe-swiftshader",
 ]
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="needs the program chromium to open the page in")
+SEEN = "new Promise((done) => requestAnimationFrame(() => setTimeout(done)))"  # a new size has reached the page
 STEP = """(seconds) => { for (let t = 0; t < seconds; t += 0.02) press.advance(0.02); return press.computed(); }"""
 
 
@@ -285,6 +286,7 @@ PLACES = """() => {
 @pytest.mark.parametrize(("width", "height"), [(390, 844), (1280, 800)])
 def test_beside_the_animation_block_and_tool_keep_to_their_half_and_off_the_figures(page, width, height):
     page.set_viewport_size({"width": width, "height": height})
+    page.evaluate(SEEN)
     page.evaluate("document.getElementById('beside').click(); press.tick(performance.now())")
     found = page.evaluate(PLACES)
     page.evaluate("document.getElementById('beside').click()")
@@ -297,6 +299,236 @@ def test_beside_the_animation_block_and_tool_keep_to_their_half_and_off_the_figu
 def test_it_never_scrolls_sideways(page, width):
     page.set_viewport_size({"width": width, "height": 800})
     assert page.evaluate("document.documentElement.scrollWidth") == width
+
+
+SLIDERS = """[...document.querySelectorAll("input[type=range]")].map((one) => [
+  one.labels.length, one.labels[0]?.control === one, one.getAttribute("aria-valuetext"),
+  document.getElementById(one.id + "-shown").textContent,
+])"""
+
+
+def test_every_slider_is_named_by_its_label_and_says_its_value_with_the_unit(page):
+    page.evaluate("document.getElementById('target').value = 50; document.getElementById('follow').checked = false")
+    page.evaluate("document.getElementById('cut').value = 50; press.restart()")
+    found = page.evaluate(SLIDERS)
+    page.evaluate("document.getElementById('target').value = 70; document.getElementById('home').click()")
+    assert [one[:2] for one in found] == 6 * [[1, True]]
+    assert all(said == shown for _, _, said, shown in found)
+    assert [said.split(" ", 1)[1] for _, _, said, _ in found if said != "none"] == ["mm", "mm/s", "mm", "s"]
+
+
+ANOTHER = """() => {
+  const { wave } = press.data.specimens[0];
+  press.data.specimens[1] = { ...press.data.specimens[0], fem: null, after: null, made: undefined,
+    wave: { ...wave, deepest_m: 0.6 * wave.deepest_m } };
+  press.state.bench.put(0, 24.5e-3, 24.5e-3, 0.7 * press.state.bodies.wave.deepest);
+  for (let n = 0; n < 100; n++) press.advance(0.02);
+  press.choose(1);
+  for (let n = 0; n < 100; n++) press.advance(0.02);
+  const told = [parseFloat(document.getElementById("target-shown").textContent), press.state.bodies.wave.deepest];
+  const depth = press.state.bench.shown.tools[0].depth;
+  press.choose(0);
+  return [depth, ...told];
+}"""
+
+
+def test_on_another_tissue_the_tool_goes_where_target_says(page, specimen):
+    depth, target, deepest = page.evaluate(ANOTHER)
+    assert deepest < 0.7 * specimen.wave.deepest
+    assert depth == pytest.approx(0.7 * deepest)
+    assert 1e3 * depth == pytest.approx(target, abs=0.006)
+
+
+REST = """() => {
+  const told = document.getElementById("told"), heard = [], now = performance.now() + 1e6;
+  press.state.bench.put(0, 24.5e-3, 24.5e-3, 1e-3);
+  for (let n = 0; n < 150; n++) {  // three seconds: the press ends within the first half
+    press.advance(0.02); press.tick(now + 20 * n);
+    if (told.textContent !== heard.at(-1)) heard.push(told.textContent);
+  }
+  const live = [...document.querySelectorAll("output, [role=status], [aria-live=polite]")];
+  return [heard, live.map((one) => one.id)];
+}"""
+
+
+def test_figures_are_told_once_and_at_rest(page):
+    heard, live = page.evaluate(REST)
+    assert [bool(text) for text in heard] == [False, True]
+    assert heard[1].startswith("Force ")
+    assert "at 1.00 mm; finite elements" in heard[1]
+    assert sorted(live) == ["note", "told"]
+
+
+def test_every_chart_says_what_it_shows(page):
+    hold(page)
+    page.evaluate(STEP, 1.0)
+    page.evaluate("press.tick(performance.now())")
+    force = page.evaluate("press.state.bench.shown.force[0]")
+    assert f"{force:.2f} by the wave" in page.locator("#trace").get_attribute("aria-label")
+    assert "mm by finite elements" in page.locator("#law").get_attribute("aria-label")
+
+
+LONG = """(name) => {
+  const [{ layers: [first, ...others] }] = press.data.specimens;
+  press.data.specimens[1] = { ...press.data.specimens[0], layers: [{ ...first, name }, ...others], made: undefined };
+  press.choose(1);
+  press.tick(performance.now());
+  const stage = document.querySelector(".stage").getBoundingClientRect();
+  const labels = [...document.querySelectorAll(".layers > span")];
+  const right = (one) => one.getBoundingClientRect().right;
+  const found = labels.map((label) => [stage.right - right(label), right(label.lastChild) - right(label)]);
+  const cut = labels[0].firstChild.scrollWidth > labels[0].firstChild.clientWidth;
+  const stack = document.getElementById("stack").textContent;
+  press.choose(0);
+  return [found, cut, stack];
+}"""
+
+
+@pytest.mark.parametrize("name", ["subcutaneous_fat", 3 * "a layer with a long name "])
+@pytest.mark.parametrize("width", [700, 1280])
+def test_a_layer_s_name_ends_within_the_picture_with_its_thickness(page, name, width):
+    page.set_viewport_size({"width": width, "height": 900})
+    page.evaluate(SEEN)
+    found, cut, stack = page.evaluate(LONG, name)
+    page.set_viewport_size({"width": 900, "height": 700})
+    assert all(room > 2 and beyond < 1 for room, beyond in found)
+    assert cut == (len(name) > 40)
+    assert name.replace("_", " ") in stack
+
+
+APART = """() => {
+  const parts = [...document.querySelectorAll(".note, .captions span, .tools button, .reading")];
+  const boxes = parts.map((one) => one.getBoundingClientRect());
+  const stage = document.querySelector(".stage").getBoundingClientRect(), over = [];
+  boxes.forEach((a, k) => boxes.slice(k + 1).forEach((b) => over.push(Math.min(
+    Math.min(a.right, b.right) - Math.max(a.left, b.left), Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top)))));
+  const wide = stage.width / 2, across = [], at = (point) => press.camera.project(point, wide / stage.height)[0];
+  for (const x of [0, 49]) for (const y of [0, 49]) for (const z of [0, -12]) across.push(Math.abs(at([x, y, z])));
+  return [Math.max(...over), Math.max(...across)];
+}"""
+
+
+@pytest.mark.parametrize(("width", "height"), [(390, 844), (1280, 900)])
+def test_a_task_beside_the_animation_has_its_words_apart_and_its_block_whole(page, width, height):
+    page.set_viewport_size({"width": width, "height": height})
+    page.evaluate(SEEN)
+    page.evaluate("document.getElementById('beside').click()")
+    page.evaluate(CHOOSE, "touch")
+    page.evaluate("press.tick(performance.now())")
+    over, across = page.evaluate(APART)
+    said = page.locator("#note").text_content()
+    page.evaluate("document.getElementById('beside').click()")
+    page.evaluate(CHOOSE, "")
+    page.set_viewport_size({"width": 900, "height": 700})
+    assert "green target" in said
+    assert over < 1
+    assert across < 0.97
+
+
+def test_without_a_script_it_says_so_and_shows_no_number(browser, address):
+    page = browser.new_context(java_script_enabled=False).new_page()
+    page.goto(address)
+    seen = page.locator("main").inner_text()
+    hidden = [page.locator(name).is_visible() for name in (".lead", ".stage", ".panel")]
+    page.context.close()
+    assert "JavaScript, which is off here" in seen
+    assert "0.00" not in seen
+    assert not any(hidden)
+
+
+LOOKS = """() => {
+  const ground = (one, part) => getComputedStyle(one, part).backgroundColor;
+  const all = (what, part) => [...document.querySelectorAll(what)].map((one) => ground(one, part));
+  return [all('input[name="colour"] + span, body'), all(".key span:not([hidden])", "::before")];
+}"""
+
+
+def test_forced_colours_leave_what_is_chosen_and_whose_line_it_is(browser, address):
+    page = browser.new_context(forced_colors="active").new_page()
+    page.goto(address)
+    choices, keys = page.evaluate(LOOKS)
+    page.context.close()
+    plain, chosen, other = choices
+    assert chosen not in (plain, other)
+    assert len({*keys, "rgba(0, 0, 0, 0)"}) == 3
+
+
+PAPER = """(event) => {
+  dispatchEvent(new Event(event));
+  const still = document.getElementById("still"), trace = document.getElementById("trace");
+  const colours = (one, x, y, wide, high) => {
+    const { data } = one.getContext("2d").getImageData(x, y, wide, high), found = new Set();
+    for (let k = 0; k < data.length; k += 4) if (data[k + 3] === 255) found.add([...data.slice(k, k + 3)].join());
+    return [...found];
+  };
+  const all = (one) => colours(one, 0, 0, one.width, one.height);
+  return [colours(still, 0, 0, 4, 4), all(still).length, all(trace)];
+}"""
+
+
+def test_on_paper_the_tissue_is_a_picture_on_white_and_the_charts_keep_their_shape(browser, address):
+    page = browser.new_context(color_scheme="dark").new_page()
+    page.goto(address)
+    page.evaluate("press.state.manual = true")
+    corner, colours, lines = page.evaluate(PAPER, "beforeprint")
+    page.emulate_media(media="print")
+    shown = [page.locator(name).is_visible() for name in ("#view", "#still", ".tools")]
+    fit = page.evaluate("getComputedStyle(document.getElementById('law')).objectFit")
+    page.emulate_media(media="screen", color_scheme="dark")
+    _, _, after = page.evaluate(PAPER, "afterprint")
+    page.context.close()
+    assert corner in (["255,255,255"], [])
+    assert colours > 50
+    assert (shown, fit) == ([False, True, False], "contain")
+    assert "221,226,232" in lines  # the palette's light grid, on a dark screen, too
+    assert "44,53,64" in after
+
+
+MEMBRANE = """(colour) => {
+  const { state } = press, { renderer, sheet } = state, [fill, draw] = [sheet.fill, renderer.draw];
+  let value = 0, mode;
+  document.querySelector(`input[value="${colour}"]`).click();
+  sheet.fill = (...of) => { value = Math.max(...of[3]); fill.apply(sheet, of); };
+  renderer.draw = (...of) => { if (of[0] === sheet) mode = of[2].mode; draw.apply(renderer, of); };
+  press.tick(performance.now());
+  Object.assign(sheet, { fill }); Object.assign(renderer, { draw });
+  document.querySelector('input[value="deflection"]').click();
+  return [value, mode];
+}"""
+
+
+def test_the_membrane_has_the_colours_of_the_legend_or_none(page, specimen):
+    page.evaluate("document.getElementById('beside').click()")
+    hold(page, 0.25, 0.55)
+    page.evaluate(STEP, 1.0)
+    depth = page.evaluate("Math.max(...press.state.bench.tissues.published.frame(1e-3))")
+    found = [page.evaluate(MEMBRANE, colour) for colour in ("deflection", "error")]
+    page.evaluate("document.getElementById('beside').click()")
+    assert depth > 0.0
+    assert found[0] == [pytest.approx(depth / specimen.wave.deepest, rel=0.02), 0]
+    assert found[1][1] == 2  # the plain colour: it was compared with nothing
+
+
+NO_WEBGL = """(() => {
+  const as = HTMLCanvasElement.prototype.getContext;
+  HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+    return kind === "webgl2" ? null : as.call(this, kind, ...more);
+  };
+})()"""
+
+
+def test_where_nothing_can_be_drawn_it_says_so_and_prints_its_charts(browser, address):
+    page = browser.new_context().new_page()
+    said = []
+    page.on("pageerror", lambda error: said.append(str(error)))
+    page.add_init_script(NO_WEBGL)
+    page.goto(address)
+    until(page, "document.getElementById('force').textContent !== '–'")
+    page.evaluate("dispatchEvent(new Event('beforeprint')); dispatchEvent(new Event('afterprint'))")
+    note = page.locator("#note").text_content()
+    page.context.close()
+    assert "No drawing here: WebGL 2 is not available" in note
+    assert said == []
 
 
 def serving(html, answer, lines, beside=None):
@@ -405,6 +637,7 @@ def test_a_running_capture_is_shown_with_its_pictures_and_leads_the_tool(browser
         texts = [
             page.locator(f"#live-{name}").text_content() for name in ("force", "depth", "lost", "dropped", "markers")
         ]
+        doing = page.locator("#live-doing").text_content()
         led = tool(page)
         stands = page.evaluate(STANDS)
         measured = page.evaluate("press.state.live.trace().at(-1)")
@@ -413,6 +646,7 @@ def test_a_running_capture_is_shown_with_its_pictures_and_leads_the_tool(browser
     until(page, "document.getElementById('live-doing').textContent.includes('Waiting for the next trial')")
     stopped = page.locator("#live").inner_text()
     page.context.close()
+    assert not any(letter.isdigit() for letter in doing)  # told to who listens: no clock in it
     assert texts == ["0.63", "1.00", "2", "1", "18 markers"]
     assert (led["phase"], led["depth"]) == ("pressed", pytest.approx(1e-3))
     assert measured[1] == 0.625

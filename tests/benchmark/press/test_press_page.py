@@ -164,6 +164,19 @@ def test_nothing_in_the_page_ends_its_data_early(page_document):
     assert "connect-src" not in page
 
 
+@pytest.mark.parametrize("live", [False, True])
+def test_the_page_as_it_is_written_names_its_controls_and_gives_no_number(page_document, live):
+    page = render_press_page(page_document, served=live, live=live)
+    labels = re.findall(r"<label.*?</label>", page, re.DOTALL)
+    sliders = re.findall(r'<input id="(\w+)"[^>]*type="range"', page)
+    assert len(sliders) == 6
+    assert all(f'<label for="{name}">' in page for name in sliders)
+    assert all(len(re.findall("<(?:input|output|select|button)", label)) <= 1 for label in labels)
+    assert all("role=" in canvas or 'aria-hidden="true"' in canvas for canvas in re.findall("<canvas[^>]*>", page))
+    assert {*re.findall(r'class="number"[^>]*>([^<]*)<', page)} == {"–"}
+    assert "<output" not in page  # a live region that would be read out at every change
+
+
 @pytest.mark.parametrize(
     ("request_", "says"),
     [
