@@ -24,6 +24,7 @@ from benchmark.models.user_file import NOT_FROM
 
 PATIENCE = 5.0
 LAST_LINES = 3
+AMONG_ITS_OWN = "a relative path means the revision's own files there, and what git does not keep is not among them"
 Blocks = list[dict[str, float]]
 OnRound = Callable[[int, int], None]
 
@@ -38,7 +39,8 @@ class Side:
     revision
         What the tree is of, for messages; None for the version that runs this check.
     moved
-        For a user's own models of another revision: their repository, and the folder with that revision's files.
+        For a user's own models of another revision: their repository, and the folder with that revision's files. The
+        process then runs in the place there of the current folder, so that a relative path means that revision's file.
 
     Raises
     ------
@@ -49,7 +51,8 @@ class Side:
     """
 
     def __init__(self, tree: Path, revision: str | None = None, moved: tuple[Path, Path] | None = None):
-        self._revision = revision
+        self._revision, self._moved = revision, moved
+        place = None if moved is None else self._place(*moved)
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115 (closed on leaving)
         command = [sys.executable, "-P", str(MEASURING / "child.py"), str(MEASURING.parent), str(tree)]
         self._process = subprocess.Popen(
@@ -58,8 +61,21 @@ class Side:
             stdout=subprocess.PIPE,
             stderr=self._errors,
             env=_environment(tree, temporary=revision is not None, moved=moved),
+            cwd=place,
             text=True,
         )
+
+    def _place(self, source: Path, target: Path) -> Path | None:
+        """The current folder's place in `target`, made where the revision has none; None outside of `source`."""
+        here = Path.cwd()
+        if not here.is_relative_to(source):
+            return None
+        place = target / here.relative_to(source)
+        try:
+            place.mkdir(parents=True, exist_ok=True)
+        except OSError:
+            raise self._error(f"the current folder, {here}, is no folder there", fault=False) from None
+        return place
 
     def values(self, plan: GatePlan) -> list[dict[str, Any]]:
         """The gated values: name, value, unit, reason."""
@@ -94,7 +110,8 @@ class Side:
     def _error(self, text: str, *, fault: bool) -> TissuebenchError:
         """The error that a failure is: another revision cannot be compared with, this one is at fault itself."""
         if self._revision is not None:
-            return NotComparableError(f"revision {self._revision} cannot be measured with this gate: {text}")
+            lost = f"; {AMONG_ITS_OWN}" if self._moved is not None and FileNotFoundError.__name__ in text else ""
+            return NotComparableError(f"revision {self._revision} cannot be measured with this gate: {text}{lost}")
         return SolverError(f"the gate could not be measured: {text}") if fault else InputError(text)
 
     def _last_words(self) -> str:
@@ -129,11 +146,14 @@ def _environment(tree: Path, *, temporary: bool, moved: tuple[Path, Path] | None
 
     A tree that is where packages are installed is found anyway, and must not go before the standard library.
     Code of a temporary tree is compiled once for all its processes, whatever the caller wants for other folders.
-    What `moved` models import from folders of their repository comes from the other revision, too.
+    What `moved` models import from folders of their repository comes from the other revision, too. Folders stay where
+    they are though the process may run in another one; an empty entry is the current folder, wherever that is.
     """
     first = [] if str(tree) == sysconfig.get_path("purelib") else [str(tree)]
     moved_paths = [] if moved is None else _moved_paths(*moved, apart=tree)
-    paths = os.pathsep.join([*first, *moved_paths, *filter(None, [os.environ.get("PYTHONPATH")])])
+    told = os.environ.get("PYTHONPATH")
+    stated = [entry and str(Path(entry).absolute()) for entry in told.split(os.pathsep)] if told else []
+    paths = os.pathsep.join([*first, *moved_paths, *stated])
     fixed = {
         "PYTHONPATH": paths,
         "PYTHONHASHSEED": "0",

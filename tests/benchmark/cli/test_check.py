@@ -1,13 +1,17 @@
 """`benchmark check` from the command line: exit codes, what is printed, what is left behind."""
 
 import json
+import re
+import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from benchmark.cli.app import main
+from benchmark.gate.versions import PRODUCT
 
+AUTHOR = ("-c", "user.name=test", "-c", "user.email=test@localhost")
 MODEL = """\
 import numpy as np
 
@@ -198,6 +202,30 @@ def test_another_schema_is_exit_three_and_a_broken_file_exit_two(call, baseline)
 def test_usage(call) -> None:
     assert call("--accept", "--against", "HEAD").code == 2
     assert call("--baseline", "b.json", "--gate", "nowhere.toml").code == 2
+
+
+CODES = dict(re.findall(r"^\| (\d) \| (.*) \|$", (PRODUCT / "docs" / "gate.md").read_text(), re.MULTILINE))
+"""What the gate's page says of each exit code."""
+
+
+@pytest.mark.parametrize(
+    ("model", "words", "code", "said", "documented"),
+    [
+        ("1 / 0\n", ("--accept",), 2, "line 1: ZeroDivisionError", "a model of your own (`own`) that fails"),
+        (MODEL, ("--against", "nowhere"), 2, "--against nowhere: the repo", "a revision that git does not know"),
+        ("1 / 0\n", ("--against", "HEAD"), 3, "revision HEAD cannot be measured", "its code or its model fails"),
+        (MODEL, (), 3, "no baseline", "no baseline yet"),
+    ],
+)
+def test_an_end_without_a_verdict_is_told_on_stderr_alone(call, model, words, code, said, documented) -> None:
+    Path("my_model.py").write_text(model)
+    for arguments in (("init", "--quiet"), ("add", "."), (*AUTHOR, "commit", "--quiet", "-m", "first")):
+        subprocess.run(["git", *arguments], check=True)
+    Path("my_model.py").write_text(MODEL if "HEAD" in words else model)
+    called = call("--json", "--quiet", *words)
+    assert (called.code, called.out) == (code, "")
+    assert said in paragraph(called)
+    assert documented in CODES[str(code)]
 
 
 def test_accept_prints_one_object_as_json(call) -> None:

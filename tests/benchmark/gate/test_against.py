@@ -11,7 +11,7 @@ from benchmark.gate.accepting import accept
 from benchmark.gate.checking import check
 from benchmark.gate.measuring.jobs import SilentListener
 from benchmark.gate.plan import CheckRequest, load_plan
-from benchmark.gate.versions import PRODUCT, subject
+from benchmark.gate.versions import PRODUCT, gated_values, rival, subject
 
 AUTHOR = ("-c", "user.name=test", "-c", "user.email=test@localhost")
 
@@ -129,6 +129,82 @@ def test_a_module_that_only_this_version_can_give_cannot_be_compared(
     git(repository.folder, *AUTHOR, "commit", "--quiet", "--all", "-m", "finder")
     with pytest.raises(NotComparableError, match=r"imports springs_own from .*gate/src/springs_own\.py"):
         run(repository, tmp_path)
+
+
+def test_data_by_a_relative_path_are_those_of_each_side(
+    repository, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Both sides read the working copy, so that 14 % in every value were green."""
+    with_data(repository, "data/weights.json")
+    monkeypatch.chdir(repository.folder)
+    failed = run(repository, tmp_path).verdict.accuracy
+    assert [row.baseline for row in failed] == pytest.approx([5.0, 4.0])
+    assert [row.now for row in failed] == pytest.approx([5.7, 4.56])
+    assert (repository.folder / "tissuebench-baseline.history.jsonl").is_file()  # the user's, beside no baseline
+
+
+@pytest.mark.parametrize(
+    ("here", "read"), [("data", "weights.json"), ("data/new", "../weights.json"), ("elsewhere", None)]
+)
+def test_the_revision_runs_in_the_same_folder_of_its_own(
+    repository, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, here: str, read: str | None
+) -> None:
+    """A folder that the revision lacks is made there; outside of the repository both run where the user is."""
+    folder = (repository.folder if read else tmp_path) / here
+    with_data(repository, read or "../gate/data/weights.json")
+    folder.mkdir(exist_ok=True)
+    monkeypatch.chdir(folder)
+    first = [each.value for each in revision_values(repository).values()]
+    assert first == pytest.approx([5.0, 4.0] if read else [5.7, 4.56])
+    assert Path.cwd() == folder
+
+
+def test_data_that_the_revision_lacks_are_told(repository, monkeypatch: pytest.MonkeyPatch) -> None:
+    data = with_data(repository, "data/weights.json")
+    git(repository.folder, "rm", "--quiet", "--cached", str(data))
+    git(repository.folder, *AUTHOR, "commit", "--quiet", "-m", "left out")
+    monkeypatch.chdir(repository.folder)
+    with pytest.raises(NotComparableError, match=r"FileNotFoundError: .*; a relative path means the revision's own"):
+        revision_values(repository)
+    repository.folder.joinpath("new").write_text("a file here, and a folder now")
+    git(repository.folder, "add", "new")
+    git(repository.folder, *AUTHOR, "commit", "--quiet", "-m", "file")
+    repository.folder.joinpath("new").unlink()
+    repository.folder.joinpath("new").mkdir()
+    monkeypatch.chdir(repository.folder / "new")
+    with pytest.raises(NotComparableError, match=r"the current folder, .*gate/new, is no folder there"):
+        revision_values(repository)
+
+
+def test_a_relative_folder_of_modules_outside_of_the_repository_stays(
+    repository, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "shared").mkdir()
+    (tmp_path / "shared" / "springs_shared.py").write_text("FACTOR = 2.0\n")
+    repository.change("my_model.py", "import numpy as np", "import numpy as np\nfrom springs_shared import FACTOR")
+    repository.change("my_model.py", "np.outer(force,", "np.outer(FACTOR * force,")
+    git(repository.folder, *AUTHOR, "commit", "--quiet", "--all", "-m", "shared")
+    monkeypatch.setenv("PYTHONPATH", "../shared")
+    monkeypatch.chdir(repository.folder)
+    assert [each.value for each in revision_values(repository).values()] == pytest.approx([10.0, 8.0])
+
+
+def revision_values(repository):
+    with rival(load_plan(repository.path), "HEAD") as other:
+        return gated_values(other.party)
+
+
+def with_data(repository, read: str) -> Path:
+    """Give the model a factor that it reads from a file of the repository, committed, and 14 % off since."""
+    data = repository.folder / "data" / "weights.json"
+    data.parent.mkdir()
+    data.write_text("1.0")
+    repository.change("my_model.py", "    return", f'    factor = float(open("{read}").read())\n    return')
+    repository.change("my_model.py", "np.outer(force,", "np.outer(factor * force,")
+    git(repository.folder, "add", ".")
+    git(repository.folder, *AUTHOR, "commit", "--quiet", "-m", "data")
+    data.write_text("1.14")
+    return data
 
 
 def with_package(repository) -> Path:
