@@ -47,6 +47,8 @@ def read_kept(path: Path, form: str, fingerprint: str) -> dict[str, np.ndarray] 
     """
     if not path.exists():
         return None
+    if not path.is_file():  # a pipe would be waited for, and a device has no end
+        raise CheckpointError(f"checkpoint {path}: is no regular file", "remove it")
     try:
         content = memoryview(path.read_bytes())
     except OSError as error:

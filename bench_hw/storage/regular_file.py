@@ -1,12 +1,14 @@
 """Reading files that a person names: regular ones, and no larger than their kind can be.
 
 A device or a pipe has no end, or no beginning until somebody writes to it; reading one would fill the memory or wait
-for ever. What is in a file is not decided here.
+for ever. What is in a file is not decided here. Files that we keep for ourselves begin with a hash of their name and of
+what follows, so that a damaged one, or one under another's name, is none.
 """
 
 from __future__ import annotations
 
 import errno
+import hashlib
 import os
 import stat
 from collections.abc import Iterator
@@ -22,6 +24,9 @@ TABLE: Final = 2_000_000_000
 """Bytes of the largest table or surface."""
 RECORDING: Final = 1_000_000_000_000
 """Bytes of the largest recording, which is never read as a whole."""
+
+SEAL: Final = 64
+"""Letters of the hash that a kept file begins with."""
 
 _KINDS = (
     (stat.S_ISDIR, "a folder"),
@@ -69,6 +74,21 @@ def read_regular(path: Path, most: int = TEXT) -> bytes:
     if len(data) > most:  # it grew, or is one whose size the system does not tell
         raise _too_large(path, len(data), most)
     return data
+
+
+def sealed(name: str, content: bytes) -> bytes:
+    """`content` as it is kept in a file called `name`, which `read_sealed` takes."""
+    return hashlib.sha256(name.encode() + b"\0" + content).hexdigest().encode() + content
+
+
+def read_sealed(path: Path, most: int) -> bytes | None:
+    """What was `sealed` in a file of at most `most` bytes; None where it is not there, not whole or not regular."""
+    try:
+        whole = read_regular(path, most)
+    except OSError:
+        return None
+    content = whole[SEAL:]
+    return content if whole == sealed(path.name, content) else None
 
 
 def _too_large(path: Path, size: int, most: int) -> NotRegularError:

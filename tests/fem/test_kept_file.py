@@ -1,5 +1,7 @@
 """Files of unfinished work: whole, of the same problem and solver, or refused."""
 
+import os
+
 import numpy as np
 import pytest
 
@@ -42,6 +44,17 @@ def test_damage_is_refused_wherever_it_is(path):
         if bad != whole:
             with pytest.raises(fem.CheckpointError, match="is damaged or no checkpoint"):
                 read_kept(path, "form 1", "mine")
+
+
+def test_a_pipe_and_a_device_in_its_place_are_refused_unopened(path):
+    path.unlink()
+    path.symlink_to("/dev/zero")
+    with pytest.raises(fem.CheckpointError, match="is no regular file"):
+        read_kept(path, "form 1", "mine")
+    path.unlink()
+    os.mkfifo(path)
+    with pytest.raises(fem.CheckpointError, match="is no regular file"):
+        read_kept(path, "form 1", "mine")
 
 
 def test_a_file_that_cannot_be_written_leaves_nothing(tmp_path):

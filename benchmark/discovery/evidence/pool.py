@@ -17,10 +17,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 from weakref import WeakKeyDictionary
-from zipfile import BadZipFile
 
 import numpy as np
 
+from bench_hw.storage.regular_file import TABLE, read_sealed, sealed
 from benchmark.child_processes import Mapped, PoolContext, begin_in_pool, single_threaded_children
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.base.effect_model import EffectModel, Fit
@@ -111,16 +111,14 @@ class Pool:
 
     def _recall(self, base: Fit, effect: Effect) -> Fit | None:
         file = self._file(base, effect)
-        try:
-            return None if file is None else restored(file.read_bytes(), base, effect)
-        except (OSError, ValueError, KeyError, BadZipFile):
-            return None
+        content = None if file is None else read_sealed(file, TABLE)
+        return None if content is None else restored(content, base, effect)
 
     def _keep(self, base: Fit, effect: Effect, made: Fit) -> Fit:
         """Keep a fit, and give it as it will be recalled, so that an interruption changes nothing."""
         file, content = self._file(base, effect), stored(made)
         if file is not None:
-            write_bytes(file, content)
+            write_bytes(file, sealed(file.name, content))
         return restored(content, base, effect)
 
 

@@ -1,7 +1,8 @@
 """Tracked films kept by what they were made from, so that the next command need not track them again.
 
 An entry is a ZIP file named by a hash of the film, the camera file, the layout and the program that tracks; whatever of
-these changes, the film is tracked anew. The folder is the user's cache folder, or `TISSUEBENCH_CACHE`; an empty
+these changes, the film is tracked anew. It begins with a hash of all that follows: a damaged entry is none, and the one
+that is then kept takes its place. The folder is the user's cache folder, or `TISSUEBENCH_CACHE`; an empty
 `TISSUEBENCH_CACHE` keeps nothing. Where nothing can be kept, nothing is.
 """
 
@@ -11,7 +12,9 @@ import hashlib
 import io
 import json
 import os
+import stat
 import zipfile
+import zlib
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -20,12 +23,15 @@ from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 
+from bench_hw.storage.regular_file import RECORDING, open_regular, read_sealed, sealed
 from reports import write_bytes
 
 VARIABLE = "TISSUEBENCH_CACHE"
 MOST_BYTES = 500_000_000
 """Of all entries together; the oldest go first."""
 TABLE, STILL, ABOUT = "markers.csv", "still.png", "about.json"
+UNREADABLE = (OSError, ValueError, KeyError, TypeError, RuntimeError, EOFError, zipfile.BadZipFile, zlib.error)
+"""What reading a ZIP file of others may raise; `NotImplementedError` is a `RuntimeError`."""
 PIECE = 1 << 20
 
 
@@ -62,12 +68,15 @@ def film_key(film: Path, camera: Path, layout: tuple[int, int]) -> str:
 
 
 def kept_film(key: str) -> KeptFilm | None:
-    """What is kept under a key; None where nothing is, or it cannot be read."""
+    """What is kept under a key; None where nothing is, or it is not as it was written."""
     folder = cache_folder()
     if folder is None or not key:
         return None
     path = folder / f"{key}.zip"
-    with suppress(OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile), zipfile.ZipFile(path) as archive:
+    content = read_sealed(path, MOST_BYTES)
+    if content is None:
+        return None
+    with suppress(*UNREADABLE), zipfile.ZipFile(io.BytesIO(content)) as archive:
         about = json.loads(archive.read(ABOUT))
         still = archive.read(STILL) if STILL in archive.namelist() else None
         found = KeptFilm(
@@ -87,7 +96,8 @@ def keep_film(key: str, film: KeptFilm) -> None:
     parts = {TABLE: film.table, ABOUT: json.dumps(about).encode()}
     parts |= {} if film.still is None else {STILL: film.still}
     with suppress(OSError):
-        write_bytes(folder / f"{key}.zip", _zipped(parts))
+        name = f"{key}.zip"
+        write_bytes(folder / name, sealed(name, _zipped(parts)))
         _make_room(folder)
 
 
@@ -100,14 +110,15 @@ def _zipped(parts: Mapping[str, bytes]) -> bytes:
 
 
 def _make_room(folder: Path) -> None:
-    """Remove the entries that were not used for longest, until the others fit."""
-    entries = sorted(((path.stat(), path) for path in folder.glob("*.zip")), key=lambda entry: entry[0].st_mtime)
-    total = sum(stat.st_size for stat, _ in entries)
-    for stat, path in entries:
+    """Remove the entries that were not used for longest, until the others fit; what is no regular file stays."""
+    found = ((path.lstat(), path) for path in folder.glob("*.zip"))
+    entries = sorted((each for each in found if stat.S_ISREG(each[0].st_mode)), key=lambda each: each[0].st_mtime)
+    total = sum(entry.st_size for entry, _ in entries)
+    for entry, path in entries:
         if total <= MOST_BYTES:
             return
         path.unlink(missing_ok=True)
-        total -= stat.st_size
+        total -= entry.st_size
 
 
 @cache
@@ -122,7 +133,7 @@ def _program() -> str:
 def _digest(paths: Iterable[Path]) -> str:
     total = hashlib.sha256()
     for path in paths:
-        with path.open("rb") as stream:
+        with open_regular(path, RECORDING) as stream:
             while piece := stream.read(PIECE):
                 total.update(piece)
     return total.hexdigest()

@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from bench_hw.storage.regular_file import NotRegularError, open_regular, read_regular
+from bench_hw.storage.regular_file import NotRegularError, open_regular, read_regular, read_sealed, sealed
 
 
 def test_a_regular_file_is_read_whole(tmp_path):
@@ -29,6 +29,29 @@ def test_the_size_is_looked_at_before_reading(tmp_path):
         stream.truncate(1 << 40)  # sparse: it takes no room, but reading it would
     with pytest.raises(NotRegularError, match=r"it has 1,099,512 MB; allowed are 16 MB"):
         read_regular(path)
+
+
+def test_what_is_sealed_comes_back_whole_and_under_its_own_name_or_not_at_all(tmp_path):
+    path, content = tmp_path / "kept", b"content of our own"
+    path.write_bytes(sealed("kept", content))
+    assert read_sealed(path, 100) == content
+    whole = path.read_bytes()
+    path.rename(tmp_path / "another")
+    assert read_sealed(tmp_path / "another", 100) is None
+    assert read_sealed(path, 100) is None
+    for bit in range(8 * len(whole)):
+        bad = bytearray(whole)
+        bad[bit // 8] ^= 1 << bit % 8
+        path.write_bytes(bad)
+        assert read_sealed(path, 100) is None
+    for size in range(len(whole)):
+        path.write_bytes(whole[:size])
+        assert read_sealed(path, 100) is None
+    path.write_bytes(whole)
+    assert read_sealed(path, len(whole) - 1) is None
+    path.unlink()
+    os.mkfifo(path)
+    assert read_sealed(path, 100) is None
 
 
 def test_a_file_whose_size_the_system_does_not_tell_is_bounded_too():

@@ -1,17 +1,19 @@
 """A discovery that was interrupted, at whatever fit, ends with the answer it would have had, to the last bit."""
 
+import os
 from concurrent.futures import Future
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from bench_hw.storage.regular_file import sealed
 from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.evidence import pool as module
 from benchmark.discovery.evidence.gains import foretold
-from benchmark.discovery.evidence.pool import Pool, forget, pool, restored, silent, stored
+from benchmark.discovery.evidence.pool import Pool, forget, pool, silent, stored
 from benchmark.discovery.evidence.selection import select
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.physics import catalogue
@@ -123,15 +125,45 @@ def test_a_kept_fit_is_known_by_its_base_its_key_and_its_bytes(base, tmp_path, m
     counted(monkeypatch, 1)
     (made,) = Pool(None, tmp_path, "key").fits("x", [(base, effect)])
     (file,) = tmp_path.iterdir()
-    assert stored(restored(file.read_bytes(), base, effect)) == stored(made)
+    assert file.read_bytes() == sealed(file.name, stored(made))
     counted(monkeypatch, 0)
     with pytest.raises(Killed):
         Pool(None, tmp_path, "another session, setting or version").fits("x", [(base, effect)])
     with pytest.raises(Killed):
         Pool(None, tmp_path, "key").fits("x", [(made, effect)])
+
+
+def cut(file):
     file.write_bytes(file.read_bytes()[:-100])
-    with pytest.raises(Killed):
-        Pool(None, tmp_path, "key").fits("x", [(base, effect)])
+
+
+def method(file):
+    """The way of packing that the last part's entry in the archive's list tells is no known one."""
+    whole = bytearray(file.read_bytes())
+    whole[whole.rfind(b"PK\x01\x02") + 10] ^= 0x20
+    file.write_bytes(whole)
+
+
+def pipe(file):
+    file.unlink()
+    os.mkfifo(file)
+
+
+def device(file):
+    file.unlink()
+    file.symlink_to("/dev/zero")
+
+
+@pytest.mark.parametrize("damage", [cut, method, pipe, device])
+def test_a_damaged_fit_is_made_anew_and_kept_whole(base, tmp_path, monkeypatch, damage):
+    effect = EFFECTS[0]
+    (made,) = Pool(None, tmp_path, "key").fits("x", [(base, effect)])
+    (file,) = tmp_path.iterdir()
+    whole = file.read_bytes()
+    damage(file)
+    (again,) = Pool(None, tmp_path, "key").fits("x", [(base, effect)])
+    assert stored(again) == stored(made)
+    assert file.read_bytes() == whole
 
 
 def test_only_kept_fits_are_forgotten(tmp_path):
