@@ -7,6 +7,7 @@ an installation may leave out is named with the extra that has it.
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 from collections.abc import Mapping
@@ -122,6 +123,14 @@ def system_words(error: OSError) -> str:
     path = Path(os.fsdecode(error.filename))
     beside = _BESIDE.fullmatch(path.name)
     return f"{path.with_name(beside[1]) if beside else path}: {said}"
+
+
+def refusal(error: BaseException) -> OSError | None:
+    """What the system refused: the error, or the ring of links that `Path.resolve` calls a RuntimeError; else None."""
+    if isinstance(error, OSError):
+        return error
+    met = error.__context__ if isinstance(error, RuntimeError) else None
+    return met if isinstance(met, OSError) and met.errno == errno.ELOOP else None
 
 
 def what_is_missing(error: BaseException) -> str | None:

@@ -11,14 +11,16 @@ from typing import Annotated, Any
 
 import typer
 
-from bench_hw.errors import BenchError, system_words, what_is_missing
+from bench_hw.errors import BenchError, refusal, system_words, what_is_missing
 from bench_hw.starting import unsaid
 
 EXIT_MISSING = 2
 EXIT_BUG = 70
 """A mistake in the program; the codes of the contract stay for what a user can mend."""
 
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
+Json = Annotated[
+    bool, typer.Option("--json", help="Print one JSON object and nothing else; without a result stdout is empty.")
+]
 Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
 Quiet = Annotated[bool, typer.Option("--quiet", help="Print errors only.")]
 
@@ -58,8 +60,9 @@ def report_unexpected(error: Exception, debug: bool) -> int:
     """Print an error that no verb foresaw, and return the exit code: the system's, a library left out, our mistake."""
     if debug:
         traceback.print_exception(error)
-    if isinstance(error, OSError):
-        say_error(error)
+    refused = refusal(error)
+    if refused is not None:
+        say_error(refused)
         return EXIT_MISSING
     missing = what_is_missing(error)
     if missing is not None:

@@ -121,13 +121,14 @@ def _report(error: Exception, *, debug: bool) -> int:
         return _fail(usage_words(error, PROGRAM), EXIT_USAGE)
     if isinstance(error, typer.Abort):
         return _fail("interrupted", EXIT_INTERRUPTED)
-    from bench_hw.errors import BenchError, system_words, what_is_missing
+    from bench_hw.errors import BenchError, refusal, system_words, what_is_missing
     from benchmark.errors import TissuebenchError
 
     if isinstance(error, TissuebenchError | BenchError):
         return _fail(str(error), error.exit_code)
-    if isinstance(error, OSError):
-        return _fail(unsaid() or system_words(error), EXIT_USAGE)
+    refused = refusal(error)
+    if refused is not None:
+        return _fail(unsaid() or system_words(refused), EXIT_USAGE)
     if isinstance(error, MemoryError):
         return _fail(f"{TOO_LITTLE}; {error}" if str(error) else TOO_LITTLE, EXIT_USAGE)
     missing = what_is_missing(error)

@@ -9,7 +9,10 @@ from typing import Annotated
 import typer
 
 Out = Annotated[Path | None, typer.Option("--out", help="Folder of the result; by default results/NAME-DATE-TIME.")]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout and nothing else.")]
+Json = Annotated[
+    bool,
+    typer.Option("--json", help="Print one JSON object on stdout and nothing else; without a result stdout is empty."),
+]
 Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of every random draw.")]
 Quiet = Annotated[bool, typer.Option("--quiet", help="No progress and no remarks.")]
 Debug = Annotated[bool, typer.Option("--debug", help="Show a traceback with an error.")]

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from bench_hw.cli._report import report_unexpected
-from bench_hw.errors import EXTRAS, system_words, what_is_missing
+from bench_hw.errors import EXTRAS, refusal, system_words, what_is_missing
 
 PYPROJECT = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 DISTRIBUTIONS = {"cv2": "opencv-python-headless", "vtkmodules": "pyvista"}
@@ -52,6 +52,20 @@ def test_any_other_missing_module_is_a_fault(capsys) -> None:
 )
 def test_a_refusal_of_the_system_names_the_file_as_a_person_did(name, said: str) -> None:
     assert system_words(PermissionError(13, "Permission denied", name)) == said
+
+
+def test_a_ring_of_links_is_a_refusal_by_whatever_name(tmp_path) -> None:
+    ring = tmp_path / "ring"
+    ring.symlink_to("ring")
+    with pytest.raises((RuntimeError, OSError)) as met:
+        ring.resolve(strict=True)
+    refused = refusal(met.value)
+    assert refused is not None
+    assert system_words(refused) == f"{ring}: Too many levels of symbolic links"
+    assert refusal(RuntimeError("of another kind")) is None
+    other = RuntimeError("met while another was told")
+    other.__context__ = PermissionError(13, "Permission denied", "x")
+    assert refusal(other) is None
 
 
 def test_an_error_without_the_systems_words_keeps_its_own() -> None:

@@ -10,6 +10,7 @@ import typer
 from benchmark.cli.options import Debug, Json, Out, Quiet
 
 if TYPE_CHECKING:
+    from benchmark.cli.console import Console
     from benchmark.gate.history.history_page import HistoryOutcome
     from benchmark.runs.finished import ReportOutcome
 
@@ -39,9 +40,11 @@ def report(runs: Runs, out: Out = None, json: Json = False, quiet: Quiet = False
     report.json: parameters changed, results changed, figures laid over each other. A history that `check` keeps
     becomes a page with every quantity by commit and its steps marked.
     """
+    from benchmark.cli.console import Console
     from benchmark.cli.show import print_json
 
-    outcome = _history(runs[0], out) if len(runs) == 1 and runs[0].suffix == HISTORY else _of_runs(runs, out)
+    history = len(runs) == 1 and runs[0].suffix == HISTORY
+    outcome = _history(runs[0], out, Console(quiet=quiet)) if history else _of_runs(runs, out)
     if json:
         print_json({**outcome.document, "out": str(outcome.folder)})
     else:
@@ -55,10 +58,14 @@ def _of_runs(runs: list[Path], out: Path | None) -> ReportOutcome:
     return page_again(runs[0], out) if len(runs) == 1 else compare_runs(runs, out)
 
 
-def _history(path: Path, out: Path | None) -> HistoryOutcome:
+def _history(path: Path, out: Path | None, console: Console) -> HistoryOutcome:
+    """Make the page of a history, and say what of it could not be read."""
     from benchmark.gate.history.history_page import write_history
 
-    return write_history(path, out)
+    outcome = write_history(path, out)
+    for warning in outcome.warnings:
+        console.say(f"  warning: {warning}")
+    return outcome
 
 
 def dossier(

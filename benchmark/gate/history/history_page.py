@@ -39,11 +39,12 @@ MOST_NAMED = 5
 
 @dataclass(frozen=True)
 class HistoryOutcome:
-    """The page of a history on disk: folder, headline, and the object for programs."""
+    """The page of a history on disk: folder, headline, the object for programs, and what it warns of."""
 
     folder: Path
     headline: str
     document: dict[str, Any]
+    warnings: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -84,7 +85,7 @@ def write_history(path: Path, out: Path | None) -> HistoryOutcome:
             write_page(new / "report.html", page)
 
         write_whole(target, fill)
-    return HistoryOutcome(target, page.verdict.headline, document)
+    return HistoryOutcome(target, page.verdict.headline, document, tuple(f"{path}: {each}" for each in _unread(unread)))
 
 
 def history_page(
@@ -108,7 +109,7 @@ def history_page(
         title=f"Regression history: {name}",
         subtitle=f"{counted(len(entries), 'check')}, {entries[0].made[:10]} to {entries[-1].made[:10]}",
         verdict=_verdict(entries, rows),
-        notices=_notices(unread),
+        notices=[Notice("warning", words, ()) for words in _unread(unread)],
         sections=[_step_section(rows), *_time_sections(times), _value_section(values), _checks(entries)],
         downloads=(
             Download("tables/steps.csv", "the steps"),
@@ -122,9 +123,9 @@ def history_page(
     return page, document, columns
 
 
-def _notices(unread: int) -> tuple[Notice, ...]:
-    words = f"{counted(unread, 'line')} of the file cannot be read: left out here."
-    return (Notice("warning", words, ()),) if unread else ()
+def _unread(unread: int) -> tuple[str, ...]:
+    """What is said of lines that could not be read."""
+    return (f"{counted(unread, 'line')} of the file cannot be read: left out here.",) if unread else ()
 
 
 STEP_COLUMNS = ("quantity", "commit", "change_percent", "check", "machine")

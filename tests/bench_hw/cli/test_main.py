@@ -37,6 +37,7 @@ def test_each_verb_explains_itself(run, verb):
     ran = run(verb, "--help")
     assert ran.exit_code == 0
     assert "--json" in ran.stdout
+    assert "without a result stdout is empty" in " ".join(ran.stdout.split())
     assert "--debug" in ran.stdout
 
 
@@ -87,6 +88,25 @@ def test_an_error_nobody_foresaw_is_one_line_without_debug(monkeypatch, capsys, 
     error = capsys.readouterr().err
     assert "unexpected error: ZeroDivisionError: half a device" in error
     assert ("Traceback" in error) == debug
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("import", "ring", "--out", "x"),
+        ("track", "ring", "--camera", "c", "--out", "x"),
+        ("simulate", "session", "--out", "ring"),
+    ],
+)
+def test_a_ring_of_links_is_exit_two_and_named_on_stderr_alone(tmp_path, monkeypatch, capsys, arguments):
+    """It was an unexpected error."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "ring").symlink_to("ring")
+    monkeypatch.setattr(sys, "argv", ["bench_hw", *arguments, "--json"])
+    assert _app.main() == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert printed.err == f"error: {tmp_path / 'ring'}: Too many levels of symbolic links\n"
 
 
 def test_what_is_no_number_is_null_in_json(capsys):

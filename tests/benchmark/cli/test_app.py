@@ -147,6 +147,27 @@ def test_every_verb_has_the_options_that_scripts_pass_everywhere(verb: str) -> N
 
 
 @pytest.mark.parametrize(
+    ("words", "code"),
+    [
+        (("run", "nowhere.toml"), 2),
+        (("run", "skin-5N", "--fields", "some"), 2),
+        (("fit", "nowhere"), 2),
+        (("report", "nowhere"), 2),
+        (("check", "--baseline", "nowhere.json"), 3),
+        (("tissues", "nowhere"), 2),
+    ],
+)
+def test_without_a_result_json_leaves_stdout_empty_as_its_help_says(
+    benchmark_cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words, code
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    called = benchmark_cli(*words, "--json")
+    assert (called.code, called.out) == (code, "")
+    assert called.err.startswith("error: ")
+    assert "without a result stdout is empty" in " ".join(benchmark_cli(words[0], "--help").out.split())
+
+
+@pytest.mark.parametrize(
     ("typed", "said"),
     [
         (("sweep", "skin-5N"), "error: Missing option '--vary'. See python -m benchmark sweep --help."),

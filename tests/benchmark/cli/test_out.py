@@ -94,6 +94,26 @@ def test_a_file_and_a_place_that_cannot_be_made_are_refused(benchmark_cli, here,
     assert tree(here) == {"thesis.tex": b"mine"}
 
 
+RINGS = {verb: [*words, "--out", "ring"] for verb, words in VERBS.items()} | {
+    "in it": ["run", "skin-5N", "--out", "ring/p"],
+    "gate": ["check", "--gate", "ring", "--out", "p"],
+    "report of it": ["report", "ring"],
+    "dossier of it": ["dossier", "ring", "--out", "p"],
+    "assess of it": ["assess", "ring"],
+}
+
+
+@pytest.mark.parametrize("verb", RINGS)
+def test_a_ring_of_links_is_refused_by_name(benchmark_cli, here, verb):
+    """It was a fault of the program."""
+    (here / "ring").symlink_to("ring")
+    called = benchmark_cli(*RINGS[verb])
+    assert called.code == 2
+    assert "ring" in called.err
+    assert "Too many levels of symbolic links" in " ".join(called.err.split())
+    assert [path.name for path in here.iterdir()] == ["ring"]
+
+
 @pytest.mark.parametrize("verb", VERBS)
 def test_notes_beside_a_result_of_ours_survive(benchmark_cli, here, verb):
     with whole_folder(here / "p") as new:

@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 
 from benchmark.cli.app import main
+from benchmark.gate.history.history_file import HistoryEntry, append
 from benchmark.runs.output.pressed import Drawn
 
 SMALL = ("--set", "fem.mesh=coarse", "--set", "load.observations=6", "--set", "load.peak=1 N", "--quiet")
@@ -27,6 +28,20 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     stiff = ("--set", "dermis.youngs_modulus=2 MPa", "--set", "support.kind=half_space")
     assert main(["run", "skin-5N", *SMALL, *stiff, "--out", str(folder / "second")]) == 0
     return folder / "first", folder / "second"
+
+
+def test_lines_of_a_history_that_cannot_be_read_are_told_on_stderr(benchmark_cli, tmp_path: Path) -> None:
+    """They were told on the page alone."""
+    path = tmp_path / "h.jsonl"
+    for number in (1, 2):
+        append(path, HistoryEntry(f"2026-01-0{number}T00:00", "abc", "A", None, True, {"mm": 1.0}, {}))
+    whole = benchmark_cli("report", path, "--out", tmp_path / "page")
+    assert (whole.code, whole.err) == (0, "")
+    path.write_bytes(path.read_bytes()[:-40])
+    for words in ((), ("--json",)):
+        torn = benchmark_cli("report", path, "--out", tmp_path / "page", *words)
+        assert (torn.code, torn.err) == (0, f"  warning: {path}: 1 line of the file cannot be read: left out here.\n")
+    assert benchmark_cli("report", path, "--out", tmp_path / "page", "--quiet").err == ""
 
 
 def test_the_page_of_a_run_is_made_again_letter_by_letter(benchmark_cli, runs, tmp_path: Path) -> None:
