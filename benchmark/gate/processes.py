@@ -72,10 +72,12 @@ class Side:
             return None
         place = target / here.relative_to(source)
         try:
-            place.mkdir(parents=True, exist_ok=True)
-        except OSError:
-            raise self._error(f"the current folder, {here}, is no folder there", fault=False) from None
-        return place
+            if place.resolve().is_relative_to(target):  # a link of the revision's may lead out
+                place.mkdir(parents=True, exist_ok=True)
+                return place
+        except (OSError, RuntimeError):  # a file, or a ring of links
+            pass
+        raise self._error(f"the current folder, {here}, is no folder there", fault=False)
 
     def values(self, plan: GatePlan) -> list[dict[str, Any]]:
         """The gated values: name, value, unit, reason."""

@@ -166,14 +166,26 @@ def test_data_that_the_revision_lacks_are_told(repository, monkeypatch: pytest.M
     monkeypatch.chdir(repository.folder)
     with pytest.raises(NotComparableError, match=r"FileNotFoundError: .*; a relative path means the revision's own"):
         revision_values(repository)
-    repository.folder.joinpath("new").write_text("a file here, and a folder now")
+
+
+@pytest.mark.parametrize("kind", ["file", "link", "ring"])
+def test_a_current_folder_that_is_none_in_the_revision_is_told(
+    repository, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str
+) -> None:
+    new = repository.folder / "new"
+    if kind == "file":
+        new.write_text("a folder only now")
+    else:
+        (tmp_path / "outside").mkdir()
+        new.symlink_to(tmp_path / "outside" if kind == "link" else "new")
     git(repository.folder, "add", "new")
-    git(repository.folder, *AUTHOR, "commit", "--quiet", "-m", "file")
-    repository.folder.joinpath("new").unlink()
-    repository.folder.joinpath("new").mkdir()
-    monkeypatch.chdir(repository.folder / "new")
-    with pytest.raises(NotComparableError, match=r"the current folder, .*gate/new, is no folder there"):
+    git(repository.folder, *AUTHOR, "commit", "--quiet", "-m", kind)
+    new.unlink()
+    (new / "sub").mkdir(parents=True)
+    monkeypatch.chdir(new / "sub")
+    with pytest.raises(NotComparableError, match=r"the current folder, .*gate/new/sub, is no folder there"):
         revision_values(repository)
+    assert not (tmp_path / "outside" / "sub").exists()
 
 
 def test_a_relative_folder_of_modules_outside_of_the_repository_stays(
