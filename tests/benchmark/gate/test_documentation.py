@@ -42,3 +42,10 @@ def test_what_it_says_of_the_rule_is_what_the_gate_does() -> None:
     assert f"more than {100 * timing.margin_against:g} % above the other revision" in PAGE
     assert timing.rounds == (3, 10)
     assert "three at least, ten at most" in PAGE
+
+
+def test_both_pages_say_that_a_revision_makes_no_worktree() -> None:
+    """One said that it is one; `test_versions` sees that there is none."""
+    other = (PRODUCT / "docs" / "robustness.md").read_text(encoding="utf-8")
+    assert "(no git worktree;" in " ".join(PAGE.split())
+    assert "without a git worktree" in " ".join(other.split())
