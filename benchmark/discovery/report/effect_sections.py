@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from benchmark.discovery.criteria import ENOUGH_TRIALS, Settings
+from benchmark.discovery.criteria import ENOUGH_TRIALS, SAME_LOG, SAME_SHARE, Settings
 from benchmark.discovery.discovery_result import Candidate, Estimate, NamedEffect
 from benchmark.discovery.report.discovery_record import DiscoveryRecord, NextExperiment, Round
 from benchmark.files.units import shown
@@ -120,7 +120,17 @@ def _constancy(effect: NamedEffect, record: DiscoveryRecord) -> str:
     if not effect.by_condition:
         return "not known: there is one condition" if len(record.found.conditions) < 2 else "not known"
     moved = dict.fromkeys(f"{each.name} in {each.condition}" for each in effect.by_condition if not each.agrees)
-    return "the same parameters in all" if not moved else f"other parameters: {', '.join(moved)}"
+    if moved:
+        return f"other parameters: {', '.join(moved)}"
+    joint = {each.name: each.value for each in effect.parameters}
+    apart = [e for e in effect.by_condition if not e.ci95[0] <= joint.get(e.name, e.value) <= e.ci95[1]]
+    if not apart:
+        return "the same parameters in all"
+    return (
+        f"alike in all, to {100 * SAME_SHARE:g} % or a factor of {math.exp(SAME_LOG):.0f} in what goes "
+        f"by its logarithm; the 95 % interval leaves out the joint value: "
+        + ", ".join(dict.fromkeys(f"{each.name} in {each.condition}" for each in apart))
+    )
 
 
 def _condition_table(effect: NamedEffect) -> Table:

@@ -229,6 +229,18 @@ def test_constancy_and_the_rivals_own_parameters_stand_under_every_verdict(recor
     assert "not known: there is one condition" in _text(replace(record, found=alone))
 
 
+def test_values_that_differ_surely_and_pass_for_alike_are_told(record) -> None:
+    """The share that forms may differ by is no agreement within intervals."""
+    (effect,) = record.found.effects
+    joint = effect.parameters[0]
+    for far, words in ((1.0, "the same parameters in all"), (1.2, "alike in all, to 35 % or a factor of 2")):
+        value = far * joint.value
+        own = ConditionEstimate(joint.name, "slow", value, joint.unit, (0.95 * value, 1.05 * value), True)
+        text = _text(replace(record, found=replace(record.found, effects=(replace(effect, by_condition=(own,)),))))
+        assert words in text
+        assert (f"leaves out the joint value: {joint.name} in slow" in text) is (far > 1.0)
+
+
 def test_what_was_not_looked_for_says_what_it_needs(record, empty) -> None:
     for each in (record, empty):
         found = replace(each.found, not_shown={"dry_friction": "unloading"})
