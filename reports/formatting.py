@@ -6,12 +6,15 @@ Files for machines are written with all digits by `reports.tables`.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from typing import Any
 
 NOTHING = "–"
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _GROUP = "\N{NARROW NO-BREAK SPACE}"
+_LEFTWARDS = "\u0590-\u08ff\ufb1d-\ufdff\ufe70-\ufefc\U00010800-\U00010fff\U0001e800-\U0001efff"
+_LEFTWARD_RUN = re.compile(rf"[{_LEFTWARDS}]+(?:[ '_-][{_LEFTWARDS}]+)*")
 
 
 def format_number(value: float, digits: int = 4, trim: bool = False) -> str:
@@ -63,6 +66,14 @@ def counted(number: int, what: str) -> str:
 def shortened(text: str, length: int) -> str:
     """Return text of at most `length` characters, its end cut off behind an ellipsis where it is longer."""
     return text if len(text) <= length else text[: length - 1].rstrip() + "…"
+
+
+def isolated(text: str, before: str = "\N{FIRST STRONG ISOLATE}", after: str = "\N{POP DIRECTIONAL ISOLATE}") -> str:
+    """Return text with marks around each run of words of a right-to-left script.
+
+    Without them such a name turns the numbers and commas beside it round (Unicode Standard Annex 9, rules N1 and W7).
+    """
+    return _LEFTWARD_RUN.sub(lambda run: f"{before}{run[0]}{after}", text)
 
 
 def is_number(value: Any) -> bool:

@@ -231,6 +231,7 @@ def environment() -> Environment:
         "panels": _embedded_panels,
         "grid": _table_grid,
         "data_link": _data_link,
+        "isolated": _isolated,
     }
     templates.globals["palette_css"] = palette.stylesheet()
     return templates
@@ -242,12 +243,24 @@ def _embedded_panels(figure: Figure, number: int) -> Iterator[tuple[Markup, Mark
 
     for position, panel in enumerate(figure.panels):
         if isinstance(panel, Picture):
-            yield Markup('<img src="{}" alt="{}">').format(panel.address, panel.alt), None
+            yield _picture(panel), None
             continue
         title = panel.title or figure.title or f"Figure {number}"
         # embed() has parsed the SVG, refused anything active and escaped every text in it.
         drawing = Markup(svg.embed(panel.svg, f"f{number}-{position}-", title, panel.alt))
         yield drawing, _data(panel.live, panel.title if len(figure.panels) > 1 else "")
+
+
+def _picture(picture: Picture) -> Markup:
+    """Return an image; a moving one waits behind a still one until it is asked for, and stops when it is put away."""
+    from markupsafe import Markup
+
+    image = Markup('<img src="{}" alt="{}">')
+    still = picture.still
+    if still is None:
+        return image.format(picture.address, picture.alt)
+    moving = Markup('<details class="moving"><summary>Show it moving</summary>{}</details>')
+    return image.format(still, picture.alt) + moving.format(image.format(picture.address, f"Moving: {picture.alt}"))
 
 
 def _data(live: Live | None, title: str) -> Markup | None:
@@ -289,6 +302,13 @@ def _column_cells(values: Sequence[Any], column: Column) -> list[tuple[str, str,
     texts = [formatting.format_cell(value, column.digits, trim=exact) for value in values]
     padding = formatting.decimal_padding([text if number else "" for text, number in zip(texts, numbers, strict=True)])
     return list(zip(texts, padding, numbers, strict=True))
+
+
+def _isolated(text: str) -> Markup:
+    """Return text for an element, with each run of a right-to-left script as a `bdi`, so that it reorders no other."""
+    from markupsafe import Markup
+
+    return Markup(formatting.isolated(str(Markup.escape(text)), "<bdi>", "</bdi>"))
 
 
 def _data_link(download: Download) -> str:

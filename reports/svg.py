@@ -11,6 +11,7 @@ import re
 from xml.etree import ElementTree
 
 from reports import palette, svg
+from reports.formatting import isolated
 
 SVG_NAMESPACE = "http://www.w3.org/2000/svg"
 _FORBIDDEN = frozenset({"script", "foreignObject", "iframe", "image", "animate", "set", "style"})
@@ -76,12 +77,13 @@ def embed(svg: str, prefix: str, title: str, description: str) -> str:
     for element in root.iter():
         _refuse_active(element)
         _prefix_ids(element, prefix)
+        element.text = element.text and isolated(element.text)
     for child in [child for child in root if child.tag in {"title", "desc"}]:
         root.remove(child)
     names = {"title": f"{prefix}title", "desc": f"{prefix}desc"}
     for position, (tag, text) in enumerate((("title", title), ("desc", description))):
         element = ElementTree.Element(tag, {"id": names[tag]})
-        element.text = text
+        element.text = isolated(text)
         root.insert(position, element)
     root.set("role", "img")
     if float(root.get("viewBox", "0 0 0 0").split()[2]) > WIDE:

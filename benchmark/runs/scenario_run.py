@@ -191,7 +191,6 @@ def _side_by_side(scenario: Scenario, options: RunOptions, listener: Listener, o
         return run_side_by_side(
             scenario,
             repeats=options.repeats,
-            seed=options.seed,
             every_field=options.every_field,
             on_progress=on_progress,
             on_remark=listener.say,

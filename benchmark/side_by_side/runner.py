@@ -7,6 +7,7 @@ so that both models meet the same state of the machine.
 
 from __future__ import annotations
 
+import itertools
 import math
 import os
 import statistics
@@ -36,7 +37,9 @@ class Speedup:
     Attributes
     ----------
     median, ci95
-        Of the load history alone, with its 95 % bootstrap interval.
+        Of the load history alone, with the interval of `median_interval`.
+    coverage
+        With what probability that interval holds the median of all such pairs: 0.95 and more from six pairs on.
     with_setup
         Of one load history with the set-up before it, median.
     pays_from
@@ -47,17 +50,18 @@ class Speedup:
 
     median: float
     ci95: tuple[float, float]
+    coverage: float
     with_setup: float
     pays_from: int | None
     repeats: int
 
     @property
     def spread(self) -> str:
-        """What the interval is: of up to five pairs a bootstrap of the median spans them all."""
-        return "95 % bootstrap" if self.repeats > FEW_PAIRS else "range"
+        """What the interval is: up to five pairs are too few for 95 % whatever their distribution."""
+        return "95 %" if self.coverage >= COVERED else "range"
 
 
-FEW_PAIRS = 5
+COVERED = 0.95
 
 
 def median_seconds(repeats: Sequence[Seconds]) -> Seconds:
@@ -67,21 +71,35 @@ def median_seconds(repeats: Sequence[Seconds]) -> Seconds:
     return Seconds(float(setup), float(wall), float(cpu))
 
 
-def speedup(slow: Sequence[Seconds], fast: Sequence[Seconds], *, seed: int, resamples: int = 2000) -> Speedup:
-    """Ratio of wall times, repeat by repeat, so that a drifting machine cancels.
+def median_interval(values: Sequence[float]) -> tuple[float, float, float]:
+    """Narrowest interval between the k-th smallest and largest value that covers their median with 95 % or more.
 
-    The interval is the percentile bootstrap of the median over the pairs; with three pairs it spans them all.
+    Whatever the distribution, it does with 1 - 2 P(B < k), B binomial of n and 1/2 (David and Nagaraja, Order
+    Statistics, 3rd ed. 2003, section 7.1). Up to five values are too few: their range is returned.
+
+    Returns
+    -------
+    (float, float, float)
+        Both ends and the probability.
     """
-    ratios = np.array([s.wall / f.wall for s, f in zip(slow, fast, strict=True)])
-    draws = np.random.default_rng(seed).integers(0, ratios.size, size=(resamples, ratios.size))
-    low, high = np.quantile(np.median(ratios[draws], axis=1), [0.025, 0.975])
+    ordered, n = sorted(values), len(values)
+    outside = list(itertools.accumulate(2 * math.comb(n, k) / 2**n for k in range(max(n // 2, 1))))
+    inner = max(sum(share <= 1.0 - COVERED for share in outside), 1)
+    return ordered[inner - 1], ordered[n - inner], max(1.0 - outside[inner - 1], 0.0)
+
+
+def speedup(slow: Sequence[Seconds], fast: Sequence[Seconds]) -> Speedup:
+    """Ratio of wall times, repeat by repeat, so that a drifting machine cancels."""
+    ratios = [s.wall / f.wall for s, f in zip(slow, fast, strict=True)]
+    low, high, coverage = median_interval(ratios)
     whole = [(s.setup + s.wall) / (f.setup + f.wall) for s, f in zip(slow, fast, strict=True)]
     return Speedup(
         float(np.median(ratios)),
-        (float(low), float(high)),
+        (low, high),
+        coverage,
         float(np.median(whole)),
         _pays_from(median_seconds(slow), median_seconds(fast)),
-        int(ratios.size),
+        len(ratios),
     )
 
 
@@ -149,7 +167,6 @@ def run_side_by_side(
     scenario: Scenario,
     *,
     repeats: int,
-    seed: int,
     every_field: bool,
     on_progress: OnProgress,
     on_remark: OnRemark = unheard,
@@ -160,9 +177,8 @@ def run_side_by_side(
 
     Parameters
     ----------
-    repeats, seed
-        Timed repeats of each model (none where one stopped early: a part of a history is not the job), and the seed of
-        the bootstrap of the speed-up.
+    repeats
+        Timed repeats of each model; none where one stopped early: a part of a history is not the job.
     every_field
         Keep the fields of each step instead of the peak's and the last one's.
     on_progress, on_remark
@@ -183,7 +199,7 @@ def run_side_by_side(
         first = _at_one_load(processes, _together(processes, on_progress, on_remark))
         repeated = _in_turn(processes, first, repeats)
     fem, wave = (_model_run(model, first.get(model), repeated.get(model, []), own) for model in MODELS)
-    ratio = speedup(fem.repeats, wave.repeats, seed=seed) if fem.repeats and wave.repeats else None
+    ratio = speedup(fem.repeats, wave.repeats) if fem.repeats and wave.repeats else None
     return SideBySide(fem, wave, ratio)
 
 

@@ -7,6 +7,7 @@ paper and for readers without JavaScript.
 from __future__ import annotations
 
 import base64
+import io
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -22,7 +23,8 @@ SIGNATURES = {b"\x89PNG\r\n\x1a\n": "image/png", b"GIF87a": "image/gif", b"GIF89
 class LiveLine:
     """A line: its name in the legend, abscissa and ordinate (n,) with NaN for no value, and its look.
 
-    `colour` is a name of `reports.palette`; `dash` holds lengths in line widths, none for a solid line.
+    `colour` is a name of `reports.palette`; `dash` holds lengths in line widths, none for a solid line; `width` is in
+    CSS pixels, and a narrow line lies on a wide one.
     """
 
     name: str
@@ -30,11 +32,13 @@ class LiveLine:
     y: Iterable[float]
     colour: str
     dash: Sequence[float] = ()
+    width: float = 2.0
 
     def to_dict(self) -> dict[str, Any]:
         """Plain lists."""
-        dash = ",".join(f"{2.0 * part:g}px" for part in self.dash) or "solid"
-        return {"name": self.name, "x": plain(self.x), "y": plain(self.y), "colour": self.colour, "dash": dash}
+        dash = ",".join(f"{self.width * part:.4g}px" for part in self.dash) or "solid"
+        look = {"colour": self.colour, "dash": dash, "width": self.width}
+        return {"name": self.name, "x": plain(self.x), "y": plain(self.y), **look}
 
 
 @dataclass(frozen=True)
@@ -169,8 +173,26 @@ class Picture:
     @property
     def address(self) -> str:
         """The picture as a data address, which fetches nothing."""
-        kind = next(kind for start, kind in SIGNATURES.items() if self.data.startswith(start))
-        return f"data:{kind};base64,{base64.b64encode(self.data).decode('ascii')}"
+        return _address(self.data)
+
+    @property
+    def still(self) -> str | None:
+        """The address of a picture from the middle of a moving one; None for one that does not move."""
+        if self.data.startswith(b"\x89PNG"):
+            return None
+        from PIL import Image
+
+        stream = io.BytesIO()
+        with Image.open(io.BytesIO(self.data)) as movie:
+            frames = getattr(movie, "n_frames", 1)
+            movie.seek(frames // 2)
+            movie.save(stream, "PNG", optimize=True)
+        return _address(stream.getvalue()) if frames > 1 else None
+
+
+def _address(data: bytes) -> str:
+    kind = next(kind for start, kind in SIGNATURES.items() if data.startswith(start))
+    return f"data:{kind};base64,{base64.b64encode(data).decode('ascii')}"
 
 
 @dataclass(frozen=True)

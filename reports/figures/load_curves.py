@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
 _AXIS = {"force": "force (N)", "depth": "depth (mm)"}
 _OTHER = {"force": "depth", "depth": "force"}
+SAME_WAY = 0.003
+"""Share of the peak within which the way back lies on the way in, less than the width of a line."""
 Curve = tuple[Floats, Floats]
 
 
@@ -125,7 +127,7 @@ def force_depth(
 
     def paint(drawing: Drawing) -> None:
         axes = drawing.subplots()
-        for (depth, force), stroke in curves:
+        for (depth, force), stroke in once:
             model_line(axes, depth, force, stroke, stops=False)
         if missed and planned_peak_N is not None:
             _mark_last(axes, *curves[0])
@@ -133,9 +135,12 @@ def force_depth(
         axes.set(xlabel="depth (mm)", ylabel="force (N)")
         legend_above(axes)
 
-    lines = [live_line(stroke.label, *curve, stroke.colour, stroke.line) for curve, stroke in curves]
+    once = [(_way_in(curve), stroke) for curve, stroke in curves]
+    lines = [live_line(stroke.label, *curve, stroke.colour, stroke.line) for curve, stroke in once]
     live = LivePlot("depth (mm)", (LiveAxes("force (N)", lines),))
     caption = f"Force on the tool over its depth: {pair.caption(len(curves) > 1)}."
+    retraced = [stroke.name for (curve, stroke), (way, _) in zip(curves, once, strict=True) if way is not curve]
+    caption += f" The way back lies on the way in ({' and '.join(retraced)})." if retraced else ""
     caption += f" The {pair.fem.name} run stopped at {format_number(reached, 3)} N." if missed else ""
     words = "; ".join(_words(curve, stroke) for curve, stroke in curves) + "."
     return Figure.of(draw(paint, WIDE, 350), caption, words, "Force over depth", live)
@@ -144,6 +149,22 @@ def force_depth(
 def _curve(name: str, depth_mm: Any, force_N: Any) -> Curve:
     depth = column(f"{name}_depth_mm", depth_mm)
     return thinned(depth, column(f"{name}_force_N", force_N, len(depth)))
+
+
+def _way_in(curve: Curve) -> Curve:
+    """The curve up to its peak where the way back lies on it: drawn twice, dashes of one way fill gaps of the other."""
+    depth, force = curve
+    if len(depth) < 3 or not np.isfinite([depth, force]).all():
+        return curve
+    top = int(np.argmax(depth))
+    back = (
+        top + 1 + int(np.argmax([*(depth[top + 1 :] < depth[0]), True]))
+    )  # the last steps may end below the first one
+    way = [np.concatenate([each[: back - 1 : -1], each[: top + 1]]) for each in (depth, force)]
+    if not 0 < top < len(depth) - 1 or (np.diff(way[0]) < 0.0).any():
+        return curve
+    apart = np.abs(force[top:back] - np.interp(depth[top:back], *way))
+    return (way[0], way[1]) if apart.max() <= SAME_WAY * np.abs(force).max() else curve
 
 
 def _mark_last(axes: Axes, curve: Curve, stroke: Stroke) -> None:

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 
 HEIGHT = 230
+AXES_WIDTH, TICK_ROOM = 270.0, 22.0
+"""Of the section in CSS pixels: about how wide it is, and how much of its height a tick's number needs."""
 SURFACE_WIDTH, SURFACE_HEIGHT, DPI = 4.2, 3.4, 80
 FRAMES_PER_SECOND = 12
 
@@ -127,6 +129,11 @@ class _Body:
         axes.set_aspect("equal")
         axes.grid(visible=False)
         axes.set(xlabel="distance from the tool axis (mm)", ylabel="height (mm)")
+        tall = np.ptp(heights) / (2.0 * self.radius[-1]) * AXES_WIDTH
+        if tall < 2.0 * TICK_ROOM:
+            axes.set_yticks([float(f"{heights.min():.2g}")])
+        else:
+            axes.locator_params(axis="y", nbins=int(tall / TICK_ROOM))
         heading(axes, self.stroke.label)
 
     def live(self) -> LiveBody:

@@ -42,7 +42,7 @@ LOOKS: Sequence[tuple[str, LineStyle]] = tuple(
     for name in ("fem", "wave", "incomplete", "good", "ink", "tissue")
 )
 """Colour and dash of each line, in order; they repeat after eighteen."""
-WIDTHS = (6.0, 3.0, 4.5, 1.2)
+WIDTHS = (8.0, 3.4, 5.6, 1.6)
 """Widths of the lines in order, the narrow ones on top: a line that another covers shows on both sides of it."""
 MOST_DOTS = 400
 
@@ -112,7 +112,7 @@ class _RunPanel:
         zero_line(axes)
         for name, (x, y) in self.lines.items():
             colour, dash = self.looks[name]
-            width = WIDTHS[list(self.looks).index(name) % len(WIDTHS)]
+            width = self._width(name)
             (line,) = axes.plot(x, y, color=colour, linestyle=dash, label=shortened(name, 40))
             line.set(linewidth=width, zorder=3.0 - 0.1 * width)
         if self.downwards:
@@ -121,9 +121,12 @@ class _RunPanel:
         heading(axes, self.name, self.place)
         drawing.legend(loc="outside lower left", ncols=1)
 
+    def _width(self, name: str) -> float:
+        return WIDTHS[list(self.looks).index(name) % len(WIDTHS)]
+
     def live(self) -> LivePlot:
         """The same lines, to zoom."""
-        lines = [live_line(name, x, y, *self.looks[name]) for name, (x, y) in self.lines.items()]
+        lines = [live_line(name, x, y, *self.looks[name], self._width(name)) for name, (x, y) in self.lines.items()]
         return LivePlot(self.labels[0], (LiveAxes(self.labels[1], lines, self.downwards),))
 
     def words(self) -> str:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from reports.blocks import LiveLine
 from reports.figures.arrays import Floats, stopped_at
-from reports.formatting import shortened
+from reports.formatting import format_number, shortened
 from reports.palette import PALETTE, name_of
 from reports.svg import themed
 
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 LineStyle = str | tuple[float, tuple[float, ...]]
 INK, MUTED, GRID, PAPER = (PALETTE[name].light for name in ("ink", "muted", "grid", "paper"))
 WIDE, SMALL = 600, 340
+LINE_WIDTH = 1.8
 _TYPE_WIDE, _TYPE_SMALL = 13.2, 11.0  # wide pictures shrink on a narrow page
 _SETTINGS: Mapping[Any, Any] = MappingProxyType(
     {
@@ -63,7 +64,7 @@ _SETTINGS: Mapping[Any, Any] = MappingProxyType(
         "xtick.minor.size": 0,
         "ytick.minor.size": 0,
         "ytick.major.pad": 5,
-        "lines.linewidth": 1.8,
+        "lines.linewidth": LINE_WIDTH,
         "lines.solid_capstyle": "round",
         "lines.dash_capstyle": "butt",
         "legend.frameon": False,
@@ -129,9 +130,45 @@ def draw(paint: Callable[[Drawing], None], width: float = WIDE, height: float = 
         matplotlib.rcParams["font.size"] = _TYPE_WIDE if width > SMALL else _TYPE_SMALL
         drawing = Drawing(figsize=(width / 72, height / 72), layout=None if placed else "constrained")
         paint(drawing)
+        _plain_ticks(drawing)
         canvas: Any = FigureCanvasSVG(drawing)
         canvas.print_svg(stream, metadata={"Date": None})  # savefig would draw it twice
     return themed(stream.getvalue())
+
+
+def _plain_ticks(drawing: Drawing) -> None:
+    """Let every tick show its whole number as text.
+
+    matplotlib writes decades as TeX, which is no text, and takes a common factor or offset out of the numbers of an
+    axis, to its end, where it stands on the label and is easily overlooked.
+    """
+    from matplotlib.ticker import FuncFormatter, LogFormatterMathtext, NullFormatter, ScalarFormatter
+
+    for axis in [axis for axes in drawing.axes for axis in (axes.xaxis, axes.yaxis)]:
+        major, minor = axis.get_major_formatter(), axis.get_minor_formatter()
+        if isinstance(major, LogFormatterMathtext):
+            axis.set_major_formatter(FuncFormatter(_decade))
+        elif isinstance(major, ScalarFormatter):
+            major.format_ticks(axis.get_majorticklocs())
+            if major.get_offset():
+                axis.set_major_formatter(FuncFormatter(_whole))
+        if isinstance(minor, LogFormatterMathtext):
+            low, high = sorted(axis.get_view_interval())
+            few = sum(low <= 10.0**power <= high for power in range(-20, 20)) < 2
+            axis.set_minor_formatter(FuncFormatter(_first_digits) if few else NullFormatter())
+
+
+def _decade(value: float, _: int | None = None) -> str:
+    return format_number(value, 3, trim=True)
+
+
+def _first_digits(value: float, _: int | None = None) -> str:
+    """Of the ticks between decades those at twice and five times."""
+    return _decade(value) if f"{value:e}"[0] in "25" else ""
+
+
+def _whole(value: float, _: int | None = None) -> str:
+    return format_number(value, 10, trim=True)
 
 
 def heading(axes: Axes, text: str, position: int | None = None, room: float = 8) -> None:
@@ -221,10 +258,10 @@ def edge_line(axes: Axes, x: float, text: str) -> None:
     axes.annotate(text, (x, 0.04), xycoords=("data", "axes fraction"), xytext=(3, 0), **along)
 
 
-def live_line(name: str, x: Floats, y: Floats, colour: str, line: LineStyle) -> LiveLine:
-    """Return a line drawn in a light shade of the palette, solid or in dashes."""
+def live_line(name: str, x: Floats, y: Floats, colour: str, line: LineStyle, width: float = LINE_WIDTH) -> LiveLine:
+    """Return a line drawn in a light shade of the palette, solid or in dashes, as wide as in the drawing."""
     dash = () if isinstance(line, str) else line[1]
-    return LiveLine(name, x, y, name_of(colour), dash)
+    return LiveLine(name, x, y, name_of(colour), dash, width)
 
 
 def model_lines(pair: Pair, x: Floats, fem: Floats, wave: Floats | None) -> list[LiveLine]:

@@ -2,7 +2,7 @@
 // Puts a plot to zoom or a body to turn in the place of each picture that has data for one. Whatever is missing for it
 // (decompression, 3-D drawing), the picture stays.
 (() => {
-  const TURN = 1.5 * Math.PI, STEPS = 54, ARROW = 0.12;
+  const TURN = 1.5 * Math.PI, STEPS = 54, ARROW = 0.12, FITS = 470;
   const BUTTONS = {
     plot: ["zoom2d", "pan2d", "resetScale2d", "toImage"],
     body: ["orbitRotation", "zoom3d", "pan3d", "resetCameraDefault3d", "toImage"],
@@ -49,11 +49,12 @@
       layout["yaxis" + id] = {
         ...axis(part.label), domain: [bottom, top], autorange: part.downwards ? "reversed" : true,
       };
-      for (const line of part.lines) {
+      // A narrow line lies on a wide one that it would be covered by; the legend keeps their order.
+      for (const line of [...part.lines].sort((a, b) => b.width - a.width)) {
         traces.push({
           type: "scatter", mode: "lines", name: line.name, x: line.x, y: line.y, yaxis: "y" + id,
-          line: { color: shade(line.colour), dash: line.dash, width: 2 }, showlegend: place === 0,
-          hovertemplate: "%{y:.5g}",
+          line: { color: shade(line.colour), dash: line.dash, width: line.width },
+          legendrank: part.lines.indexOf(line) + 1, showlegend: place === 0, hovertemplate: "%{y:.5g}",
         });
       }
     });
@@ -79,7 +80,7 @@
     ...Array.from({ length: count }, (_, k) => [count - 1 - k, TURN]),
   ];
 
-  function body(data) {
+  function body(data, width) {
     const radius = data.radius, route = way(radius.length), traces = [];
     const still = { showscale: false, hoverinfo: "skip", lighting: { ambient: 0.75, diffuse: 0.35, specular: 0 } };
     data.faces.forEach((face, place) => {
@@ -110,9 +111,14 @@
       ...circle(radius[at], data.faces[0].height[at] + 0.02 * data.ring), type: "scatter3d", mode: "lines",
       name: "tool edge", line: { color: shade("tool"), width: 5 }, hoverinfo: "skip",
     });
-    const side = { ...axis("mm"), nticks: 5, showbackground: false };
-    const camera = { eye: { x: 1.05, y: -1.15, z: 0.8 }, center: { x: 0, y: 0, z: -0.12 } };
-    const scene = { aspectmode: "data", camera, xaxis: side, yaxis: side, zaxis: { ...side, nticks: 4 } };
+    const side = (label) => ({ ...axis(label), nticks: 5, showbackground: false });
+    // The camera sees as much of the height wherever it is; in a narrow place it stands back for the titles at the sides.
+    const back = Math.max(1, FITS / width);
+    const camera = { eye: { x: 1.35 * back, y: -1.6 * back, z: 1.07 * back }, center: { x: -0.06, y: -0.05, z: -0.12 } };
+    const scene = {
+      aspectmode: "data", camera, xaxis: side("x (mm)"), yaxis: side("y (mm)"),
+      zaxis: { ...side("z (mm)"), nticks: 4 },
+    };
     return [traces, { ...common(data.title), scene, margin: { l: 0, r: 0, t: 84, b: 34 } }];
   }
 
@@ -168,13 +174,18 @@
     const settings = {
       responsive: true, displaylogo: false, scrollZoom: false, displayModeBar: true, modeBarButtons: [BUTTONS[data.kind]],
     };
-    await Plotly.newPlot(place, ...build(data), settings);
+    await Plotly.newPlot(place, ...build(data, place.clientWidth), settings);
     if (data.kind === "body") {
       place.tabIndex = 0;
       place.addEventListener("keydown", (event) => turn(event, place, Plotly));
     }
+    const press = () => place.querySelectorAll(".modebar-btn[data-attr$=dragmode]").forEach(
+      (each) => each.setAttribute("aria-pressed", each.classList.contains("active")));
+    place.on("plotly_afterplot", press);
+    place.on("plotly_relayout", press);
+    press();
     const theme = matchMedia("(prefers-color-scheme: dark)");
-    theme.addEventListener("change", () => Plotly.react(place, ...build(data), settings));
+    theme.addEventListener("change", () => Plotly.react(place, ...build(data, place.clientWidth), settings));
     swap(panel, place, data.kind);
   }
 

@@ -5,7 +5,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reports.formatting import counted, decimal_padding, format_cell, format_number, is_exact, is_number, shortened
+from reports.formatting import (
+    counted,
+    decimal_padding,
+    format_cell,
+    format_number,
+    is_exact,
+    is_number,
+    isolated,
+    shortened,
+)
 
 
 @pytest.mark.parametrize(
@@ -94,3 +103,17 @@ def test_padding_brings_decimal_points_in_line():
     assert lengths == [3, 3, 3]
     assert padding[3] == ""
     assert decimal_padding([]) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        ("off by עור +24.7 %, שומן +29.4 %", "off by <עור> +24.7 %, <שומן> +29.4 %"),
+        ("רקמת שומן: 3 trials", "<רקמת שומן>: 3 trials"),
+        ("جلد", "<جلد>"),
+        ("dermis, 皮膚, épiderme", "dermis, 皮膚, épiderme"),
+    ],
+)
+def test_words_from_right_to_left_are_kept_apart(text, wanted):
+    assert isolated(text, "<", ">") == wanted
+    assert isolated(text) == wanted.replace("<", "\u2068").replace(">", "\u2069")

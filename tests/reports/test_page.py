@@ -12,6 +12,7 @@ from reports import (
     Bullets,
     Column,
     Download,
+    Equation,
     Fact,
     Facts,
     Figure,
@@ -128,7 +129,9 @@ def test_the_contents_list_every_section(html, demo_page):
 
 
 def test_figures_and_tables_are_numbered_in_order(html):
-    assert re.findall(r'<figcaption><span class="label">Figure (\d+)<', html) == [str(n) for n in range(1, 20)]
+    assert re.findall(r'<figcaption id="figure-\d+-caption"><span class="label">Figure (\d+)<', html) == [
+        str(n) for n in range(1, 20)
+    ]
     assert re.findall(r'<caption[^>]*><span><span class="label">Table (\d+)<', html) == ["1", "2"]
 
 
@@ -264,6 +267,7 @@ def test_an_embedded_file_is_whole():
     assert base64.b64decode(link[1]).decode() == content
 
 
+SQUARE = '<svg viewBox="0 0 1 1"/>'
 NAN = float("nan")
 PLOT = LivePlot(
     "depth (mm)", (LiveAxes("force (N)", (LiveLine("</script>", [0.0, 1 / 3], [NAN, 2.0], "fem", (4, 1)),)),)
@@ -301,9 +305,37 @@ def test_data_cannot_end_its_element_and_holds_no_nan():
     table = json.loads(text)
     assert table["title"] == "a panel"
     assert table["axes"][0]["lines"] == [
-        {"name": "</script>", "x": [0.0, 0.333333], "y": [None, 2.0], "colour": "fem", "dash": "8px,2px"}
+        {"name": "</script>", "x": [0.0, 0.333333], "y": [None, 2.0], "colour": "fem", "dash": "8px,2px", "width": 2.0}
     ]
 
 
 def test_the_library_is_packed_once():
     assert scripts() is scripts()
+
+
+def test_names_from_right_to_left_turn_nothing_round():
+    name, wanted = "<עור>", "&lt;<bdi>עור</bdi>&gt;"
+    blocks = [
+        Paragraph(name), Bullets([name]), Notice("warning", name, [name]), Facts([Fact(name, name)]),
+        Listing("text", name), Subsection(name, []), KeyFigures([KeyFigure(name, name, "", name)]),
+        Table(name, [name], [[name]], Download("c.csv", name)), Figure.of(SQUARE, name, name, name),
+    ]  # fmt: skip
+    told = Page(name, Verdict("good", name, [name]), [Section(name, blocks)], name, [Fact(name, name)], footer=name)
+    html = render_page(told)
+    assert html.count(wanted) == 25
+    assert "<title>&lt;עור&gt;</title>" in html
+    for element in ("title", "desc"):
+        assert re.search(rf'<{element} id="[^"]+">&lt;\u2068עור\u2069&gt;</{element}>', html)
+
+
+def test_what_may_scroll_can_be_reached_by_the_keyboard():
+    equation = Equation("<mi>F</mi>", "F", "(1)")
+    two = Figure([Panel(SQUARE, "a"), Panel(SQUARE, "b")], "c")
+    html = render_page(
+        Page("t", Verdict("good", "h"), [Section("s", [Figure.of(SQUARE, "c", "a"), two, equation, Listing("x", "y")])])
+    )
+    tags = Checker(html).tags
+    reached = [attributes for _, attributes in tags if attributes.get("tabindex") == "0"]
+    assert [each.get("class", "pre") for each in reached] == ["panel", "equation", "pre"]
+    assert reached[0]["aria-labelledby"] in {attributes.get("id") for _, attributes in tags}
+    assert reached[1]["aria-label"] == "Equation (1)"

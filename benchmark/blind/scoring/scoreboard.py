@@ -63,10 +63,13 @@ def _verdict(rows: Sequence[BlindRow]) -> Verdict:
     missed = [row for row in judged if not row.passed]
     if not judged:
         return Verdict("unknown", "No measure with a bar has a case in this run.")
-    points = [f"{row.measure}: {_in_words(row)}, bar {row.bar}" for row in missed[:MOST_POINTS]]
-    points += [f"and {len(missed) - MOST_POINTS} more, below"] if len(missed) > MOST_POINTS else []
-    said = f"{len(judged) - len(missed)} of {len(judged)} bars are reached."
-    return Verdict("finding" if missed else "good", said, points)
+    doubtful = [row for row in judged if row.passed and not _is_sure(row)]
+    told = [f"{row.measure}: {_in_words(row)}, bar {row.bar}" for row in missed]
+    told += [f"{row.measure}: {_in_words(row)}, bar {row.bar}, reached but not sure" for row in doubtful]
+    points = told[:MOST_POINTS] + ([f"and {len(told) - MOST_POINTS} more, below"] if len(told) > MOST_POINTS else [])
+    doubt = f"Too few cases to be sure of {len(doubtful)}, but " if doubtful else ""
+    said = f"{doubt}{len(judged) - len(missed)} of {len(judged)} bars are reached."
+    return Verdict("finding" if missed else "unknown" if doubtful else "good", said, points)
 
 
 def _in_words(row: BlindRow) -> str:
@@ -122,10 +125,13 @@ def _unmeasured(measure: str, bar: str) -> tuple[Any, ...]:
 def _reached(row: BlindRow) -> str:
     if row.passed is None:
         return ""
+    return ("yes" if _is_sure(row) else "yes, not sure") if row.passed else "no"
+
+
+def _is_sure(row: BlindRow) -> bool:
+    """Whether the whole interval is on the good side of the bar."""
     sign, limit = row.bar.split()
-    end = row.ci95[0] if sign == ">=" else row.ci95[1]
-    sure = end >= float(limit) if sign == ">=" else end <= float(limit)
-    return ("yes" if sure else "yes, not sure") if row.passed else "no"
+    return row.ci95[0] >= float(limit) if sign == ">=" else row.ci95[1] <= float(limit)
 
 
 def _by_lab(cases: Sequence[Judged]) -> list[Block]:

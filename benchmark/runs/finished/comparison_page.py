@@ -219,14 +219,18 @@ def _percent(now: float, before: float) -> float | None:
 
 
 def _timing(runs: Mapping[str, SavedRun]) -> Table:
+    ratios = [run.record.pair.speedup for run in runs.values()]
+    spreads = {ratio.spread for ratio in ratios if ratio is not None}
+    spread = spreads.pop() if len(spreads) == 1 else "interval's"
     heads = (
         "run", "model", Column("unknowns"), Column("repeats"), Column("set-up", "s"), Column("wall", "s"),
-        Column("CPU", "s"), Column("speed-up", "×", 3), Column("95 % low", "×", 3), Column("95 % high", "×", 3),
+        Column("CPU", "s"), Column("speed-up", "×", 3), Column(f"{spread} low", "×", 3),
+        Column(f"{spread} high", "×", 3), "interval",
     )  # fmt: skip
     rows = []
     for name, run in runs.items():
         ratio = run.record.pair.speedup
-        span = (None, None, None) if ratio is None else (ratio.median, *ratio.ci95)
+        span = (None,) * 4 if ratio is None else (ratio.median, *ratio.ci95, ratio.spread)
         for model in (run.record.pair.fem, run.record.pair.wave):
             seconds = model.seconds
             times = (None, None, None) if seconds is None else (seconds.setup, seconds.wall, seconds.cpu)

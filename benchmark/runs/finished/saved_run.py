@@ -107,7 +107,7 @@ def _record(scenario: Scenario, document: dict[str, Any], tables: SavedTables, s
     drive = scenario_drive(scenario)
     fem, wave = (_model_run(model, scenario, document["models"][model], tables) for model in NAMES)
     both = fem.repeats and wave.repeats
-    pair = SideBySide(fem, wave, speedup(fem.repeats, wave.repeats, seed=seed) if both else None)
+    pair = SideBySide(fem, wave, speedup(fem.repeats, wave.repeats) if both else None)
     bare = RunRecord(document["name"], scenario, drive.time, drive.value, pair, (), None, (), seed)
     compared = bool(document["comparison"])
     deflections = (bare.deflections(run.result) for run in (fem, wave))

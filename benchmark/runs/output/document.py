@@ -42,6 +42,8 @@ def results_document(record: RunRecord) -> dict[str, Any]:
         "speedup": {
             "median": ratio.median if ratio else None,
             "ci95": list(ratio.ci95) if ratio else None,
+            "interval": ratio.spread if ratio else None,
+            "coverage": ratio.coverage if ratio else None,
             "with_setup": ratio.with_setup if ratio else None,
             "pays_from_histories": ratio.pays_from if ratio else None,
             "repeats": ratio.repeats if ratio else 0,

@@ -12,6 +12,8 @@ from benchmark.runs.report.trials_section import fit_section
 from benchmark.runs.report.values import fit_headline, sentence, sheet_headline
 from reports import Column, Download, Fact, Notice, Page, Section, Table, Verdict
 
+FITTED = "fitted_parameters.csv"
+
 
 def fit_page(
     session: Session,
@@ -33,9 +35,9 @@ def fit_page(
         verdict=Verdict("finding", sentence(headline)),
         facts=(Fact("Made", str(environment["made"])), Fact("Session", session.fingerprint[:16])),
         notices=notices,
-        sections=(fit_section(fit.parameters, fit.notes), Section("Trials", (_trials(fit),))),
+        sections=(fit_section(fit.parameters, fit.notes, FITTED), Section("Trials", (_trials(fit),))),
         downloads=(
-            Download("fitted_parameters.csv", "fitted and fixed parameters with intervals"),
+            Download(FITTED, "fitted and fixed parameters with intervals"),
             Download("fit.json", "the fit for programs", media_type="application/json"),
         ),
         footer=f"tissuebench {environment['packages']['tissuebench']}",

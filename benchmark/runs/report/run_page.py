@@ -179,7 +179,7 @@ def run_page(
     sections: list[Section] = []
     if trials is not None:
         sections.append(measured_section(trials.trials, trials.synthetic, record.pair))
-        sections.append(fit_section(trials.parameters, trials.notes))
+        sections.append(fit_section(trials.parameters, trials.notes, "tables/fitted_parameters.csv"))
         sections += [] if trials.markers is None else [film_section(trials.markers)]
     sections += [scenario_section(record)]
     if record.results:

@@ -127,8 +127,8 @@ def _rms_percent(force: Array, model: Array | None, peak: float) -> float | None
     return float(100.0 * np.sqrt(np.nanmean((force - model) ** 2)) / peak)
 
 
-def fit_section(parameters: Sequence[FittedParameter], notes: Sequence[str]) -> Section:
-    """Return the section on the fitted parameters."""
+def fit_section(parameters: Sequence[FittedParameter], notes: Sequence[str], href: str) -> Section:
+    """Return the section on the fitted parameters, whose table is the file `href` beside the page."""
     fitted = [
         parameter
         for parameter in parameters
@@ -157,7 +157,7 @@ def fit_section(parameters: Sequence[FittedParameter], notes: Sequence[str]) -> 
         "Parameters, fitted and fixed",
         columns,
         rows,
-        download=Download("tables/fitted_parameters.csv", "the same"),
+        download=Download(href, "the same"),
         folded=False,
     )
     blocks: list[Block] = [figure, table]

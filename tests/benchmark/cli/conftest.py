@@ -1,8 +1,12 @@
 """The command line called in this process, its output caught."""
 
+import html
 import pickle
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
+from urllib.parse import unquote
 
 import pytest
 
@@ -28,6 +32,8 @@ def benchmark_cli(capfd: pytest.CaptureFixture[str]) -> Callable[..., Called]:
     def call(*arguments: object) -> Called:
         code = main([str(argument) for argument in arguments])
         out, err = capfd.readouterr()
+        if code == 0 and "--out" in arguments:
+            follow_links(Path(str(arguments[arguments.index("--out") + 1])) / "report.html")
         return Called(code, out, err)
 
     return call
@@ -39,6 +45,17 @@ def no_drawing() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("benchmark.runs.output.pressed.draw_pressed", lambda *_: Drawn(b"", "left out of this test"))
         yield
+
+
+def follow_links(page: Path) -> None:
+    """Every link of a page, where there is one, leads to a file beside it, to a part of it or into it."""
+    text = page.read_text("utf-8") if page.is_file() else ""
+    parts = set(re.findall(r' id="([^"]+)"', text))
+    for link in map(html.unescape, re.findall(r' href="([^"]+)"', text)):
+        if link.startswith("#"):
+            assert link[1:] in parts, f"{page} has no {link}"
+        elif not link.startswith("data:"):
+            assert (page.parent / unquote(link)).exists(), f"{page} links to {link}, which is not there"
 
 
 def timed_once(**options: object) -> RunOptions:

@@ -71,6 +71,8 @@ def test_side_by_side_names_what_changed(benchmark_cli, runs, tmp_path: Path) ->
             assert found.wave_max_mm == pytest.approx(row.wave_mm, rel=1e-12, nan_ok=True)
     assert [each["name"] for each in document["runs"]] == ["first", "second"]
     page = (tmp_path / "both/report.html").read_text()
+    assert "range low <span" in page
+    assert "95 % low" not in page
     assert "2 parameters of the scenario differ." in page
     for text in ("first, FEM", "first, wave model", "second, FEM", "Change against first"):
         assert text in page

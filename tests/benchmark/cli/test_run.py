@@ -61,6 +61,8 @@ def check_tables(out: Path, document: dict) -> None:
         np.testing.assert_allclose(rows.peak_memory_mb, document["models"][model]["peak_memory_MB"])
     assert timing.groupby("model").size().to_dict() == {"fem": 3, "wave": 3}
     assert document["speedup"]["ci95"][0] <= document["speedup"]["median"] <= document["speedup"]["ci95"][1]
+    assert document["speedup"]["interval"] == "range"  # of three pairs, which holds the median in three of four cases
+    assert document["speedup"]["coverage"] == 0.75
 
 
 @pytest.mark.slow

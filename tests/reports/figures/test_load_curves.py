@@ -74,3 +74,20 @@ def test_long_histories_are_thinned(lines):
 def test_unequal_columns_are_refused():
     with pytest.raises(ValueError, match="wave_force_N has shape"):
         force_depth(DEPTH, DEPTH, DEPTH, DEPTH[:3])
+
+
+def test_a_way_back_that_lies_on_the_way_in_is_drawn_once(lines):
+    depth, force = np.r_[DEPTH[3:], DEPTH[-2::-1]], np.r_[DEPTH[3:] ** 2, DEPTH[-2::-1] ** 2]
+    figure = force_depth(depth, force, depth, 1.2 * force)
+    assert "The way back lies on the way in (FEM and wave model)." in figure.caption
+    for line, stretch in zip(figure.panels[0].live.axes[0].lines, (1.0, 1.2), strict=True):
+        assert np.allclose(line.x, DEPTH)
+        assert np.allclose(line.y, stretch * DEPTH**2)
+    assert {len(line) for line in lines(figure.panels[0].svg, "fem")} <= {2, 3, len(DEPTH)}  # grid and legend beside it
+
+
+def test_a_loop_is_drawn_as_a_loop():
+    depth, force = np.r_[DEPTH, DEPTH[-2::-1]], np.r_[DEPTH**2, 0.97 * DEPTH[-2::-1] ** 2]
+    figure = force_depth(depth, force)
+    assert "way back" not in figure.caption
+    assert len(figure.panels[0].live.axes[0].lines[0].x) == len(depth)

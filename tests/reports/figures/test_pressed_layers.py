@@ -1,5 +1,6 @@
 """A GIF that moves."""
 
+import base64
 import io
 
 import numpy as np
@@ -52,6 +53,14 @@ def test_the_words_name_model_layers_and_deflections():
     assert "skin by 2.000 mm on the axis" in words
 
 
+@pytest.mark.parametrize(("base", "thin", "wanted"), [(10.0, 1.0, 3), (None, 0.01, 1)])
+def test_a_flat_section_has_no_more_ticks_than_fit_beside_it(texts, base, thin, wanted):
+    figure = pressed_layers(["skin"], [0.0], base, RADIUS, thin * DENT[None], None, 5.0)
+    across = {f"{value}" for value in range(-20, 21, 5)}
+    heights = [text.replace("−", "-") for text in texts(figure.panels[0].svg)]
+    assert sum(text not in across and text.lstrip("-").replace(".", "").isdigit() for text in heights) <= wanted
+
+
 SIDE = np.linspace(0.0, 10.0, 5)
 FRAMES = [-depth * np.outer(np.sin(0.1 * np.pi * SIDE), np.sin(0.1 * np.pi * SIDE)) for depth in (0.0, 1.0, 2.0)]
 
@@ -70,11 +79,23 @@ def test_frames_of_another_shape_are_refused(frames):
 
 
 def test_it_stands_in_a_page_with_its_words():
-    block = Figure.of_picture(b"GIF89a-and-so-on", "Moves <down>.", "A surface that sinks", "Sinking")
+    gif = moving_surface(SIDE, SIDE, FRAMES)
+    block = Figure.of_picture(gif, "Moves <down>.", "A surface that sinks", "Sinking")
     html = render_page(Page("title", Verdict("finding", "Nothing."), [Section("One", [block])]))
-    assert 'src="data:image/gif;base64,R0lGODlhLWFuZC1zby1vbg=="' in html
+    assert f'src="data:image/gif;base64,{base64.b64encode(gif).decode()}"' in html
     assert "Moves &lt;down&gt;." in html
     assert "Figure 1" in html
+
+
+def test_nothing_moves_until_it_is_asked_for():
+    block = Figure.of_picture(moving_surface(SIDE, SIDE, FRAMES), "Moves.", "A surface that sinks")
+    html = render_page(Page("title", Verdict("finding", "Nothing."), [Section("One", [block])]))
+    before, behind = html.split('<details class="moving">')
+    assert '<img src="data:image/png;' in before
+    assert "data:image/gif" not in before
+    assert '<img src="data:image/gif;' in behind.split("</details>")[0]
+    still = Image.open(io.BytesIO(base64.b64decode(before.split("data:image/png;base64,")[1].split('"')[0])))
+    assert getattr(still, "n_frames", 1) == 1
 
 
 def test_other_content_is_refused():

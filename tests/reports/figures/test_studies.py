@@ -1,5 +1,6 @@
 """Lines of several runs over each other."""
 
+import itertools
 import re
 
 import numpy as np
@@ -28,6 +29,9 @@ def test_lines_that_lie_on_each_other_show_each_by_its_width(lines) -> None:
     drawn = [(of, float(width)) for of, width in strokes if of in ("fem", "wave", "incomplete", "good")][:4]
     assert [of for of, _ in drawn] == ["fem", "incomplete", "wave", "good"]  # both FEM under both waves
     assert [width for _, width in drawn] == sorted({width for _, width in drawn}, reverse=True)
+    assert min(wide - narrow for (_, wide), (_, narrow) in itertools.pairwise(drawn)) > 1.5
+    live = {line.colour: line.width for line in panel.live.axes[0].lines}
+    assert live == dict(drawn)
 
 
 def test_looks_differ_in_more_than_colour() -> None:

@@ -96,3 +96,29 @@ def test_every_figure_is_described(every_figure):
         assert figure.caption.endswith("."), name
         assert all(len(panel.alt) > 25 and panel.alt.endswith(".") for panel in figure.panels), name
         assert not any("nan" in panel.alt.lower().split() for panel in figure.panels), name
+
+
+@pytest.mark.parametrize("span", [(0.02, 4e4), (2.0, 8.0), (1e-7, 1e8)])
+def test_the_ticks_of_decades_are_numbers_not_mathematics(texts, span):
+    def paint(drawing):
+        axes = drawing.subplots()
+        axes.plot(span, span, color=FEM.colour)
+        axes.set(xscale="log", yscale="log")
+
+    svg = draw(paint)
+    assert "$" not in svg
+    assert "mathdefault" not in svg
+    found = [float(text.replace("\u202f", "")) for text in texts(svg) if text and "×" not in text]
+    assert all(span[0] / 10 <= value <= span[1] * 10 for value in found)
+    assert len(texts(svg)) >= 4
+
+
+@pytest.mark.parametrize("values", [(-8e-5, 6e-5), (123456.01, 123456.04), (0.0, 4e5)])
+def test_no_factor_and_no_offset_stands_beside_an_axis(texts, values):
+    def paint(drawing):
+        drawing.subplots().plot(values, (0.0, 1.0), color=FEM.colour)
+
+    found = texts(draw(paint))
+    assert not [text for text in found if text.startswith(("1e", "+", "×"))]
+    plain = [text.replace("−", "-").replace("\u202f", "").replace(" × 10⁻⁵", "e-5") for text in found]
+    assert sum(values[0] - 1e-9 <= float(text) <= values[1] + 1e-9 for text in plain) >= 3

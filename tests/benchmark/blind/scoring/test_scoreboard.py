@@ -51,6 +51,14 @@ def test_reached_and_surely_reached_are_two_things() -> None:
     assert reached["seconds, ten trials with markers"] == "yes"
 
 
+def test_what_is_reached_but_not_sure_is_not_good() -> None:
+    nulls = [case for case in answered(right=True) if case.kind == "null"][:1]
+    verdict = page_of(nulls).verdict
+    assert verdict.status == "unknown"
+    assert verdict.headline.startswith("Too few cases to be sure of ")
+    assert all(point.endswith("reached but not sure") for point in verdict.points)
+
+
 def test_every_case_has_its_place_by_lab_and_family() -> None:
     page = page_of(answered(right=True))
     rows = rows_of(page, "Cases by lab and family")

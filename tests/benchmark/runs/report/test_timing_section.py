@@ -37,5 +37,5 @@ def test_a_users_model_has_no_frame() -> None:
 
 @pytest.mark.parametrize(("ratio", "words"), [(1702.3, "1702"), (258.14, "258"), (4.203, "4.2")])
 def test_a_speed_up_is_told_in_one_form_without_an_exponent(ratio: float, words: str) -> None:
-    found = Speedup(ratio, (ratio, ratio), 2.0, 1, 3)
+    found = Speedup(ratio, (ratio, ratio), 0.75, 2.0, 1, 3)
     assert speedup_words(found) == f"{words} (range {words} to {words}, 3 interleaved pairs)"
