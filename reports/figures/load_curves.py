@@ -160,11 +160,11 @@ def _way_in(curve: Curve) -> Curve:
     back = (
         top + 1 + int(np.argmax([*(depth[top + 1 :] < depth[0]), True]))
     )  # the last steps may end below the first one
-    way = [np.concatenate([each[: back - 1 : -1], each[: top + 1]]) for each in (depth, force)]
-    if not 0 < top < len(depth) - 1 or (np.diff(way[0]) < 0.0).any():
+    way, load = (np.concatenate([each[: back - 1 : -1], each[: top + 1]]) for each in (depth, force))
+    if not 0 < top < len(depth) - 1 or (np.diff(way) < 0.0).any():
         return curve
-    apart = np.abs(force[top:back] - np.interp(depth[top:back], *way))
-    return (way[0], way[1]) if apart.max() <= SAME_WAY * np.abs(force).max() else curve
+    apart = np.abs(force[top:back] - np.interp(depth[top:back], way, load))
+    return (way, load) if apart.max() <= SAME_WAY * np.abs(force).max() else curve
 
 
 def _mark_last(axes: Axes, curve: Curve, stroke: Stroke) -> None:

@@ -149,7 +149,7 @@ def _plain_ticks(drawing: Drawing) -> None:
         if isinstance(major, LogFormatterMathtext):
             axis.set_major_formatter(FuncFormatter(_decade))
         elif isinstance(major, ScalarFormatter):
-            major.format_ticks(axis.get_majorticklocs())
+            major.format_ticks(axis.get_majorticklocs().tolist())
             if major.get_offset():
                 axis.set_major_formatter(FuncFormatter(_whole))
         if isinstance(minor, LogFormatterMathtext):

@@ -74,3 +74,16 @@ def _strings(node: object) -> Iterator[str]:
         yield node
     for inner in node.values() if isinstance(node, dict) else node if isinstance(node, list) else ():
         yield from _strings(inner)
+
+
+def test_the_site_has_its_own_look_and_its_links_stand_out_from_the_page() -> None:
+    settings = yaml.safe_load((ROOT / "mkdocs.yml").read_text())
+    (look,), (script,) = settings["extra_css"], settings["extra_javascript"]
+    assert "tabIndex = 0" in (DOCS / script).read_text()
+    links = re.findall(r"--bs-link(?:-hover)?-color: #(\w{6})", (DOCS / look).read_text())
+    assert len(links) == 2
+    for colour in links:
+        shares = [int(colour[k : k + 2], 16) / 255 for k in (0, 2, 4)]
+        linear = [share / 12.92 if share <= 0.04045 else ((share + 0.055) / 1.055) ** 2.4 for share in shares]
+        luminance = sum(weight * share for weight, share in zip((0.2126, 0.7152, 0.0722), linear, strict=True))
+        assert 1.05 / (luminance + 0.05) > 4.5  # Web Content Accessibility Guidelines 2.1, 1.4.3

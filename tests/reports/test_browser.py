@@ -6,7 +6,23 @@ from urllib.parse import urlparse
 
 import pytest
 
-from reports import Panel, write_page
+from reports import (
+    Bullets,
+    Download,
+    Fact,
+    Facts,
+    KeyFigure,
+    KeyFigures,
+    Listing,
+    Notice,
+    Page,
+    Panel,
+    Paragraph,
+    Section,
+    Table,
+    Verdict,
+    write_page,
+)
 
 CHROMIUM = shutil.which("chromium")
 FLAGS = [
@@ -204,3 +220,50 @@ def test_the_embedded_file_can_be_taken(visit):
     with page.expect_download() as download:
         page.locator(".downloads a.copy").first.click()
     assert download.value.suggested_filename == "results.json"
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_a_name_without_a_space_does_not_push_the_page(browser, tmp_path, width):
+    name = "W" * 200
+    blocks = [
+        Paragraph(name), Bullets([name]), Notice("warning", name, [name]), Facts([Fact(name, name)]),
+        Listing("text", name), KeyFigures([KeyFigure(name, 1.0, "mm", name)]), Table(name, [name], [[name]]),
+    ]  # fmt: skip
+    verdict = Verdict("good", name, [name])
+    shown = Page(name, verdict, [Section(name, blocks)], name, downloads=[Download(name, name)], footer=name)
+    page = browser.new_page(viewport={"width": width, "height": 900})
+    page.goto(write_page(tmp_path / "report.html", shown).as_uri())
+    assert page.evaluate("document.documentElement.scrollWidth") == width
+    page.close()
+
+
+def test_on_paper_only_what_comes_before_something_stays_with_it(visit):
+    page = visit()
+    page.emulate_media(media="print")
+    after = "() => [...document.querySelectorAll('%s')].map(each => getComputedStyle(each).breakAfter)"
+    assert set(page.evaluate(after % "h2, h3, caption")) == {"avoid"}
+    assert set(page.evaluate(after % "figure > figcaption:last-child")) == {"auto"}  # or no part may end a page
+
+
+def test_no_label_of_a_figure_is_too_small_on_a_phone(visit):
+    page = visit(viewport={"width": 390, "height": 844}, java_script_enabled=True)
+    small = page.evaluate(
+        """() => [...document.querySelectorAll('svg:not(.main-svg) text')].map(text => {
+            const { a, b, c, d } = text.getScreenCTM();
+            return [parseFloat(getComputedStyle(text).fontSize) * Math.sqrt(Math.abs(a * d - b * c)), text.textContent];
+        }).filter(([size]) => size > 0 && size < 9)"""
+    )
+    assert small == []
+
+
+def test_the_chosen_tool_of_a_plot_is_told_without_its_colour(visit):
+    page = visit(viewport={"width": 1280, "height": 900})
+    panel = page.locator(".panel[data-live]").first
+    panel.scroll_into_view_if_needed()
+    panel.locator(".swap").wait_for(timeout=60_000)
+    buttons = panel.locator(".modebar-btn[data-attr=dragmode]")
+    pressed = "() => document.querySelector('.modebar-btn[data-val=pan]').getAttribute('aria-pressed')"
+    assert page.evaluate(pressed) == "false"
+    buttons.nth(1).click()
+    page.wait_for_function(pressed.replace("() =>", "() => 'true' ==="))
+    assert buttons.nth(0).get_attribute("aria-pressed") == "false"
