@@ -113,3 +113,8 @@ def test_what_is_themed_is_a_document_of_its_own():
 def test_a_foreign_colour_is_named():
     with pytest.raises(ValueError, match="#ABCDEF is not in the palette"):
         themed(RAW.replace("#0B5FAE", "#ABCDEF"))
+
+
+def test_a_name_from_right_to_left_turns_no_number_beside_it_round():
+    root = ElementTree.fromstring(embed('<svg viewBox="0 0 1 1"><text>עור, 3 trials</text></svg>', "f1-", "", ""))
+    assert root.find("text").text == "\N{FIRST STRONG ISOLATE}עור\N{POP DIRECTIONAL ISOLATE}, 3 trials"
