@@ -1,10 +1,14 @@
 """Models side by side without starting processes, for tests that are not about the processes."""
 
+import html
 import multiprocessing
 import pickle
+import re
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, suppress
+from pathlib import Path
+from urllib.parse import unquote
 
 import pytest
 
@@ -62,3 +66,20 @@ def in_threads(threads: Callable[[], AbstractContextManager[None]]) -> Iterator[
     """Models run in threads in the whole module."""
     with threads():
         yield
+
+
+def links_lead_somewhere(page: Path) -> None:
+    """Every link of a page, where there is one, leads to a file beside it, to a part of it or into it."""
+    text = page.read_text("utf-8") if page.is_file() else ""
+    parts = set(re.findall(r' id="([^"]+)"', text))
+    for link in map(html.unescape, re.findall(r' href="([^"]+)"', text)):
+        if link.startswith("#"):
+            assert link[1:] in parts, f"{page} has no {link}"
+        elif not link.startswith("data:"):
+            assert (page.parent / unquote(link)).exists(), f"{page} links to {link}, which is not there"
+
+
+@pytest.fixture(scope="session")
+def follow_links() -> Callable[[Path], None]:
+    """The check of a page's links."""
+    return links_lead_somewhere

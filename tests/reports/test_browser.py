@@ -241,7 +241,7 @@ def test_on_paper_only_what_comes_before_something_stays_with_it(visit):
     page = visit()
     page.emulate_media(media="print")
     after = "() => [...document.querySelectorAll('%s')].map(each => getComputedStyle(each).breakAfter)"
-    assert set(page.evaluate(after % "h2, h3, caption")) == {"avoid"}
+    assert set(page.evaluate(after % "h2, h3, summary, caption")) == {"avoid"}
     assert set(page.evaluate(after % "figure > figcaption:last-child")) == {"auto"}  # or no part may end a page
 
 

@@ -1,12 +1,9 @@
 """The command line called in this process, its output caught."""
 
-import html
 import pickle
-import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from urllib.parse import unquote
 
 import pytest
 
@@ -28,7 +25,7 @@ class Called:
 
 
 @pytest.fixture
-def benchmark_cli(capfd: pytest.CaptureFixture[str]) -> Callable[..., Called]:
+def benchmark_cli(capfd: pytest.CaptureFixture[str], follow_links: Callable[[Path], None]) -> Callable[..., Called]:
     def call(*arguments: object) -> Called:
         code = main([str(argument) for argument in arguments])
         out, err = capfd.readouterr()
@@ -45,17 +42,6 @@ def no_drawing() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("benchmark.runs.output.pressed.draw_pressed", lambda *_: Drawn(b"", "left out of this test"))
         yield
-
-
-def follow_links(page: Path) -> None:
-    """Every link of a page, where there is one, leads to a file beside it, to a part of it or into it."""
-    text = page.read_text("utf-8") if page.is_file() else ""
-    parts = set(re.findall(r' id="([^"]+)"', text))
-    for link in map(html.unescape, re.findall(r' href="([^"]+)"', text)):
-        if link.startswith("#"):
-            assert link[1:] in parts, f"{page} has no {link}"
-        elif not link.startswith("data:"):
-            assert (page.parent / unquote(link)).exists(), f"{page} links to {link}, which is not there"
 
 
 def timed_once(**options: object) -> RunOptions:

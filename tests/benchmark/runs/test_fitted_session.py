@@ -53,11 +53,12 @@ def fitted(session, out, **wish):
     return json.loads((out / "fit.json").read_text())
 
 
-def test_each_trial_is_fitted_with_its_own_height(cylinders, tmp_path) -> None:
+def test_each_trial_is_fitted_with_its_own_height(cylinders, tmp_path, follow_links) -> None:
     """With the median for all one silicone had 20 to 50 kPa."""
     found = fitted(cylinders, tmp_path / "out")
     factors = [trial["stiffness_factor"] for trial in found["trials"]]
     assert np.array(factors) * 20e3 == pytest.approx(MODULUS, rel=0.015)
+    follow_links(tmp_path / "out" / "report.html")
     assert max(factors) < 1.015 * min(factors)
     assert set(found["session"]["heights_mm"].values()) == {8.0, 12.0, 20.0}
 
