@@ -22,6 +22,7 @@ import fem  # noqa: E402
 from benchmark.files import Layer, Scenario, load_scenario  # noqa: E402
 from benchmark.models import Drive  # noqa: E402
 from benchmark.models.fem_problem import problem_of  # noqa: E402
+from benchmark.models.fem_steps import follow_deeper  # noqa: E402
 from benchmark.models.model_result import profile_radii  # noqa: E402
 from benchmark.models.wave_layered import layered_wave  # noqa: E402
 from benchmark.models.wave_parts import Solution  # noqa: E402
@@ -156,7 +157,8 @@ def compare(press: Press, steps: int = STEPS) -> Comparison:
     elastic = scenario.tissue.model_copy(update={"layers": tuple(map(_elastic, scenario.tissue.layers))})
     peak = scenario.load.model_copy(update={"peak": press.peak})
     scenario = scenario.model_copy(update={"tissue": elastic, "load": peak})
-    exact = fem.prepare(problem_of(scenario)).run(fem.Load("force", time, force))
+    load = fem.Load("force", time, force)
+    _, exact = follow_deeper(fem.prepare(problem_of(scenario)), lambda model, _: model.run(load))
     if not exact.complete:
         raise ArithmeticError(f"{press.name}: {exact.failure}")
     wave = (layered_wave if hole is None else plate_wave)(scenario).follow(Drive("force", time, force))
