@@ -287,9 +287,7 @@ class QuasiStaticPress:
     def _stood(self, tool: LoadSegment, elastic: LoadSegment, state: PressState) -> FloatArray:
         """(n,) depth below the surface at which it stands, m; what a tool does not touch is at that of its force."""
         away = ~elastic.touching & (elastic.force > 0.0)
-        if not away.any():
-            return tool.depth
-        return np.where(elastic.touching | away, self._depth_at(tool, elastic.force, away, state), 0.0)
+        return self._depth_at(tool, elastic.force, away, state) if away.any() else tool.depth
 
     def _depth_at(self, tool: LoadSegment, force: FloatArray, away: BoolArray, state: PressState) -> FloatArray:
         """(n,) depth below the surface at which it stands, m: the tool's, or where it is away that of its force."""

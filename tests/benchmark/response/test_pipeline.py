@@ -113,6 +113,24 @@ def test_a_tissue_that_lets_go_within_a_row_pulls_in_its_part_before(pull, dampi
     assert set(np.flatnonzero(alone < 0.0)) <= set(np.flatnonzero(_law(motion.depth) > -pull))
 
 
+@pytest.mark.parametrize(
+    ("depth", "row"),
+    [([1.0, 0.0, 0.0, -1.0, -2.0, -3.0], 3), ([1.0, 0.5, 0.0, -0.2, -0.4, -0.6], 5)],
+    ids=["jump", "end"],
+)
+def test_where_nothing_tells_how_it_lets_go_the_rows_stay(depth, row):
+    """A tool that stood before, and a trial that ends there."""
+    depth = 1e-3 * np.array(depth)
+    time = np.arange(depth.size, dtype=np.float64)
+    record = DepthRecord(time, depth, np.append(time - 0.5, time[-1] + 0.5))
+    values = {"adhesion": {"tear": 0.0, "reach": 1e-3, "rise": 0.1, "adhesion_force": 0.5}}
+    pipeline = TrialPipeline(AROUND, (BY_SLUG["adhesion"],))
+    motion = Motion(time, depth, np.zeros(depth.size), record)
+    plain = pipeline.readings(ForceAlone(_law), values, replace(motion, record=None)).force
+    assert plain[row] == 0.0
+    np.testing.assert_array_equal(pipeline.readings(ForceAlone(_law), values, motion).force, plain)
+
+
 class Sheet:
     """An elastic answer whose lower face moves by the depth over the distance from the tool's axis."""
 

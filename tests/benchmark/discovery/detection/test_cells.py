@@ -231,7 +231,7 @@ def test_what_is_short_or_changes_its_sign_is_not_lost_in_the_mean_of_a_cell():
 def test_a_run_of_rows_shows_what_no_row_does():
     """0.02 N in eight rows, where trials scatter by 0.02 N a row."""
     noise, low = np.random.default_rng(1).normal(0.0, 0.02, (6, 80)), np.zeros(80)
-    low[40:48] = -0.05
+    low[40:48] = -0.02
     assert misses_nothing(of_force(noise))
     assert not misses_nothing(of_force(noise + low))
 
@@ -240,3 +240,8 @@ def test_noise_of_trials_is_no_miss():
     """30 sessions of 0.5 % of the largest force a row; the mean of a cell of each trial is a tenth of that."""
     rng = np.random.default_rng(2)
     assert all(misses_nothing(of_force(rng.normal(0.0, 0.01, (6, 400)))) for _ in range(30))
+
+
+def test_of_one_trial_it_is_not_known_what_it_scatters_by():
+    noise = np.random.default_rng(3).normal(0.0, 0.01, (1, 400))
+    assert misses_nothing(of_force(noise))

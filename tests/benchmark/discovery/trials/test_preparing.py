@@ -10,7 +10,7 @@ import pytest
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.discovery.trials.rows import depth_step
 from benchmark.errors import InputError
-from benchmark.files import Camera, load_session
+from benchmark.files import Camera, Support, load_session
 
 
 def rewrite(folder, change):
@@ -134,16 +134,30 @@ def test_a_depth_whose_sensor_scatters_is_prepared_steady(tmp_path, quick_sessio
     assert re.match(r"the depth of 4 of 4 trials scatters by (19|20|21) um from row to row", said)
 
 
-def test_markers_of_a_face_that_is_held_are_left_out(session_of):
-    """Also those on its upper face: nothing of a session says so, and as a lower face they cannot be understood."""
-    session = session_of(trials=6, speeds=(3e-3,))
+def filmed(session):
+    """A camera, and four markers in all trials that move by 0.1 mm."""
     frames = np.repeat([0.0, 0.5, 1.0], 4)
     places = np.tile([[-3e-3, -3e-3], [3e-3, -3e-3], [-3e-3, 3e-3], [3e-3, 3e-3]], (3, 1))
     number, moved = np.tile(np.arange(4), 3), places + 1e-4 * frames[:, None]
     markers = SimpleNamespace(time=frames, marker=number, x=moved[:, 0], y=moved[:, 1])
-    filmed = tuple(replace(trial, markers=markers) for trial in session.trials)
     camera = Camera(marker_rows=2, marker_columns=2, marker_spacing=6e-3)
-    study = prepare(replace(session, trials=filmed, camera=camera), 100)
+    return replace(session, camera=camera, trials=tuple(replace(trial, markers=markers) for trial in session.trials))
+
+
+def test_markers_of_a_face_that_is_held_are_left_out(session_of):
+    """Also those on its upper face: nothing of a session says so, and as a lower face they cannot be understood."""
+    study = prepare(filmed(session_of(trials=6, speeds=(3e-3,))), 100)
     assert study.layout is None
     assert [text for text in study.warnings if "held there" in text]
     assert not [text for text in study.warnings if "no four markers" in text]
+
+
+def test_markers_of_trials_over_a_hole_stay_beside_others(session_of):
+    session = filmed(session_of(trials=3, speeds=(3e-3, 6e-3)))
+    first, over = session.trials[0].condition, Support(kind="hole", hole_radius=0.02)
+    supported = [replace(each, support=over) if each.condition == first else each for each in session.trials]
+    study = prepare(replace(session, trials=tuple(supported)), 100)
+    assert [text for text in study.warnings if "held there" in text]
+    seen = {each.name: bool((each.count[..., 1:] > 0.0).any()) for each in study.conditions}
+    assert seen == {each.name: each.name == first for each in study.conditions}
+    assert len(seen) == 2
