@@ -95,6 +95,11 @@ MARKER_SEEN = 0.5
 """Share of the frames in which a marker must be seen. First choice."""
 PRINT_LEVEL = 0.999
 """Of the F test that markers scatter round their grid by more than tracking shows. First choice."""
+FAR_AIR = (0.9, 0.5)
+"""Where a marker rests is told by frames with the tool beyond this share of the height at which it begins: beyond the
+first, or the second where those are fewer than `REST_FRAMES`, or else before contact. First choice."""
+REST_FRAMES = 5
+"""Frames of a trial that are enough to tell where its markers rest. First choice."""
 LEAST_MARKERS = 4
 """Markers that all trials must show; a translation, a turn and a size need no fewer. Arithmetic."""
 REVERSAL = 0.1

@@ -83,9 +83,21 @@ def resting_places(trials: Sequence[RawTrial], seen: NDArray[np.bool_]) -> Array
 def _before_contact(raw: RawTrial, seen: NDArray[np.bool_]) -> Array | None:
     if raw.markers is None or raw.frames is None:
         return None
-    touching = np.flatnonzero(raw.depth > 0.0)
-    still = raw.frames < raw.time[touching[0]] if touching.size else np.ones(raw.frames.size, dtype=bool)
+    still = _in_air(raw, raw.frames)
     return np.asarray(raw.markers[still][:, seen].mean(axis=0)) if still.any() else None
+
+
+def _in_air(raw: RawTrial, frames: Array) -> NDArray[np.bool_]:
+    """Frames (f,), s, before contact, as far from it as there are enough.
+
+    Where a depth counts from the force that a sensor first shows, the tool presses a soft sheet before it is zero;
+    where it begins, and in the farther half of its way, it surely touches nothing.
+    """
+    touching = np.flatnonzero(raw.depth > 0.0)
+    before = frames < raw.time[touching[0]] if touching.size else np.ones(frames.size, dtype=bool)
+    depth = np.interp(frames, raw.time, raw.depth)
+    far = (before & (depth < share * raw.depth[0]) for share in criteria.FAR_AIR)
+    return next((each for each in far if each.sum() >= criteria.REST_FRAMES), before)
 
 
 def printed_grid(camera: Camera, nominal: Array, rests: Array) -> PrintedGrid:

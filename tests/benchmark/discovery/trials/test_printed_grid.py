@@ -14,7 +14,7 @@ from benchmark.discovery.base.effect_model import EffectModel
 from benchmark.discovery.base.trials_problem import TrialsProblem
 from benchmark.discovery.trials.marker_layout import grid, layout
 from benchmark.discovery.trials.preparing import prepare
-from benchmark.discovery.trials.printed_grid import printed_grid
+from benchmark.discovery.trials.printed_grid import printed_grid, resting_places
 from benchmark.files import Camera
 from benchmark.files.sessions.session_loading import load_session
 
@@ -69,6 +69,23 @@ def test_a_frame_laid_through_the_markers_middle_tells_the_axis_no_better():
     places = rests(np.random.default_rng(10))
     found = printed_grid(CAMERA, NOMINAL, places - places.mean(axis=(0, 1)))
     assert found.centre_error == pytest.approx(SCATTER / np.sqrt(18), rel=0.2)
+
+
+@pytest.mark.parametrize(
+    ("waits", "air", "off"),
+    [(0.5, 0.5e-3, 0.0), (0.0, 0.8e-3, 0.0), (0.0, 0.35e-3, 15e-6)],
+    ids=["it waits", "a long way there", "a short way there"],
+)
+def test_a_press_before_the_depth_is_zero_moves_no_resting_place(waits, air, off):
+    """The tool touches 0.3 mm above the depth that is told as zero."""
+    time = np.arange(0.0, 4.0, 0.01)
+    depth = np.clip((time - waits) * 0.5e-3, 0.0, None) - air
+    frames = np.arange(0.01, 3.9, 1.0 / 30.0)
+    pressed = np.clip(np.interp(frames, time, depth) + 0.3e-3, 0.0, None)
+    markers = NOMINAL * (1.0 + 0.1 / 18e-3 * pressed[:, None, None])
+    raw = SimpleNamespace(time=time, depth=depth, frames=frames, markers=markers)
+    found = resting_places([raw], np.ones(len(NOMINAL), dtype=bool))[0]
+    assert abs(found - NOMINAL).max() <= off + 1e-12
 
 
 def test_a_grid_within_tracking_is_trusted():
