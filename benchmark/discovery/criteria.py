@@ -126,6 +126,9 @@ IN_AIR = 0.02
 
 # ---- base: how wrong an elastic model may be, and how trials differ --------------------------------------------------
 
+SCALES = 5e-3
+"""By how much the powers of all layers' moduli in the force may miss 1 together and still scale it, which they do where
+no stress has another origin. First choice, above what differences of presses leave."""
 SHAPE_PRIOR = {
     "modulus": 3.0,
     "exponent": 0.03,

@@ -146,6 +146,9 @@ class EffectModel:
             key = setup_key(slug)
             if key is not None:
                 values[key] = values.get(key, 0.0) + float(vector[k])
+        moduli = self.problem.moduli
+        common = values[moduli[0]] if moduli else 0.0
+        values |= {key: values[key] - common for key in moduli} | {"modulus": values["modulus"] + common}
         forms = {name: value for name, value in values.items() if not is_setup(name)}
         own = self.values(vector) if self.tabled else {}
         added = {t.key: (own[slug][t.amount], own[slug][t.part]) for slug, t in self.tabled.items()}

@@ -97,19 +97,20 @@ def is_setup(name: str) -> bool:
     return "." in name
 
 
+def is_modulus(name: str) -> bool:
+    """Whether a nuisance of the base is a layer's modulus, which it has by its logarithm."""
+    return name.endswith((MODULUS, STIFFNESS))
+
+
 def farthest(name: str) -> float:
     """How far a nuisance of the base may go: the table's second order serves no farther, nor is a power law another."""
     if not is_setup(name):
         return criteria.FAR_EXPONENT if name == "exponent" else np.inf
     if name in CHOICES:
         return 1.0
-    return criteria.FAR_MODULUS if name.endswith((MODULUS, STIFFNESS)) else criteria.FAR_SETUP
+    return criteria.FAR_MODULUS if is_modulus(name) else criteria.FAR_SETUP
 
 
 def shares(values: Mapping[str, float]) -> dict[str, float]:
     """Relative changes of set-up parameters from the base's vector, which has moduli by their logarithm."""
-    return {
-        key: float(np.expm1(value)) if key.endswith((MODULUS, STIFFNESS)) else value
-        for key, value in values.items()
-        if is_setup(key)
-    }
+    return {key: float(np.expm1(value)) if is_modulus(key) else value for key, value in values.items() if is_setup(key)}

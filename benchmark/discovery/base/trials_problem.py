@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from benchmark.discovery import criteria
-from benchmark.discovery.base.setup_priors import is_setup
+from benchmark.discovery.base.setup_priors import is_modulus, is_setup
 from benchmark.discovery.trials.study import Study
 from benchmark.physics import Motion
 from benchmark.response.elastic_table import ElasticTable
@@ -132,6 +133,19 @@ class TrialsProblem:
         if layout is None or LENS not in self.shape_priors:
             return {}
         return {LENS: layout.lens_within(criteria.SHAPE_PRIOR[LENS])[0]}
+
+    @cached_property
+    def moduli(self) -> tuple[str, ...]:
+        """Keys of all layers' moduli, where a factor on all of them does nothing but scale the force; else none.
+
+        Tables have no mixed terms. Along what all layers share of their changes these would undo the others, so that
+        it is taken for that factor: of two layers the ratio then has its whole second order.
+        """
+        keys = tuple(key for key in self.setup if is_modulus(key))
+        if len(keys) < 2 or any(key not in table.by for key in keys for table in self.tables):
+            return ()
+        shares = [sum(table.by[key].force[0, -1] for key in keys) / table.force[-1] for table in self.tables]
+        return keys if np.allclose(shares, 1.0, atol=criteria.SCALES) else ()
 
     @property
     def zeros(self) -> tuple[str, ...]:

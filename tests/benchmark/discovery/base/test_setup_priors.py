@@ -1,5 +1,7 @@
 """Set-up parameters as nuisances of the base: which, how uncertain, and what they change."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -97,6 +99,29 @@ def test_an_entry_changes_the_base_beyond_what_its_prior_allows(tmp_path, quick_
 def prepared(folder, quick_session):
     session = session_in(folder, quick_session)
     return session, prepare(session, 60)
+
+
+def test_what_all_layers_share_of_their_moduli_scales_the_force_and_moves_nothing(tmp_path, quick_session):
+    session = session_in(tmp_path, quick_session, layers=TWO_LAYERS)
+    problem = calibrate(session, prepare(session, 60)).problem
+    assert problem.moduli == ("dermis.youngs_modulus", "fat.youngs_modulus")
+    model = EffectModel(problem, ())
+    stiffer, scaled = (dict.fromkeys(problem.shapes, 0.0) for _ in range(2))
+    stiffer |= dict.fromkeys(problem.moduli, 0.5)
+    scaled["modulus"] = 0.5
+    for beside in (0.0, -0.1):
+        both = [{**each, "dermis.youngs_modulus": each["dermis.youngs_modulus"] + beside} for each in (stiffer, scaled)]
+        shapes = [model.shape(np.array([each[name] for name in problem.shapes])) for each in both]
+        assert shapes[0].modulus == pytest.approx(shapes[1].modulus)
+        assert shapes[0].setup == pytest.approx(shapes[1].setup)
+
+
+def test_moduli_beside_a_stress_of_another_origin_do_not_scale_the_force(tmp_path, quick_session):
+    session = session_in(tmp_path, quick_session, layers=TWO_LAYERS)
+    problem = calibrate(session, prepare(session, 60)).problem
+    by = {key: replace(each, force=0.9 * each.force) for key, each in problem.tables[0].by.items()}
+    assert replace(problem, tables=(replace(problem.tables[0], by=by),)).moduli == ()
+    assert replace(problem, tables=(replace(problem.tables[0], by={}),)).moduli == ()
 
 
 def test_the_modulus_of_one_layer_is_the_common_factor_and_a_density_changes_nothing(tmp_path, quick_session):
