@@ -39,7 +39,7 @@ from benchmark.discovery.base.setup_priors import setup_entries, told_priors
 from benchmark.discovery.base.trial_bounds import gains_between, large_remarks, late_by_speed, trial_values
 from benchmark.discovery.base.trials_problem import OWN
 from benchmark.discovery.criteria import Settings
-from benchmark.discovery.detection.cells import channel_sizes, reachable, within_tolerance
+from benchmark.discovery.detection.cells import channel_sizes, misses_nothing, reachable, within_tolerance
 from benchmark.discovery.detection.contrasts import contrasts
 from benchmark.discovery.detection.disagreement import (
     Detection,
@@ -305,7 +305,7 @@ def _verified(searched: Searched, settings: Settings) -> _Answer:
     if chosen is base:
         return _Answer(searched, base, base, before, held_out_residuals(base, base), 0.0)
     plain = unbent(base, chosen)
-    if nothing_amiss(plain) and not any(setup_key(effect.slug) for effect in chosen.model.effects):
+    if misses_nothing(plain) and not any(setup_key(effect.slug) for effect in chosen.model.effects):
         return _verified(replace(searched, selection=unchosen(searched.selection)), settings)
     after = detect(chosen, settings)
     held = held_out_residuals(plain, chosen)
