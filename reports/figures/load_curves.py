@@ -157,9 +157,8 @@ def _way_in(curve: Curve) -> Curve:
     if len(depth) < 3 or not np.isfinite([depth, force]).all():
         return curve
     top = int(np.argmax(depth))
-    back = (
-        top + 1 + int(np.argmax([*(depth[top + 1 :] < depth[0]), True]))
-    )  # the last steps may end below the first one
+    below = np.flatnonzero(depth[top + 1 :] < depth[0])  # the last steps may end below the first one
+    back = top + 1 + int(below[0]) if below.size else len(depth)
     way, load = (np.concatenate([each[: back - 1 : -1], each[: top + 1]]) for each in (depth, force))
     if not 0 < top < len(depth) - 1 or (np.diff(way) < 0.0).any():
         return curve

@@ -14,7 +14,6 @@ import json
 import os
 import stat
 import zipfile
-import zlib
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -30,8 +29,6 @@ VARIABLE = "TISSUEBENCH_CACHE"
 MOST_BYTES = 500_000_000
 """Of all entries together; the oldest go first."""
 TABLE, STILL, ABOUT = "markers.csv", "still.png", "about.json"
-UNREADABLE = (OSError, ValueError, KeyError, TypeError, RuntimeError, EOFError, zipfile.BadZipFile, zlib.error)
-"""What reading a ZIP file of others may raise; `NotImplementedError` is a `RuntimeError`."""
 PIECE = 1 << 20
 
 
@@ -76,7 +73,8 @@ def kept_film(key: str) -> KeptFilm | None:
     content = read_sealed(path, MOST_BYTES)
     if content is None:
         return None
-    with suppress(*UNREADABLE), zipfile.ZipFile(io.BytesIO(content)) as archive:
+    unlike = (OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile)  # whole, but written otherwise
+    with suppress(*unlike), zipfile.ZipFile(io.BytesIO(content)) as archive:
         about = json.loads(archive.read(ABOUT))
         still = archive.read(STILL) if STILL in archive.namelist() else None
         found = KeptFilm(
