@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from math import floor
 from typing import Any
 
 import numpy as np
@@ -135,11 +136,17 @@ def second_tools(usual: Usual, radius: float, there: Sequence[float] | None = No
     return tuple(_with_tool(usual, radius, name, other) for name, other in others.items() if other >= least)
 
 
-def _with_tool(usual: Usual, radius: float, name: str, other: float) -> Experiment:
+def shallower(usual: Usual, radius: float, experiment: Experiment, depth: float) -> Experiment:
+    """An experiment of `second_tools` less deep, where the session's own depth would be too hard; `depth` in m."""
+    return _with_tool(usual, radius, experiment.name, experiment.tool_radius or radius, floor(1e5 * depth) / 1e5)
+
+
+def _with_tool(usual: Usual, radius: float, name: str, other: float, depth: float | None = None) -> Experiment:
     hold = max(min(usual.hold * (other / radius) ** 2, LONG), usual.hold)
     longer = f", and hold for {hold:.3g} s" if hold > usual.hold else ""
-    words = f"Change the tool to one of {1e3 * other:g} mm radius and press as before{longer}."
-    segments = _press(usual.depth, usual.speed, hold)
+    pressed = "as before" if depth is None else f"to {1e3 * depth:.3g} mm, since deeper would be too hard"
+    words = f"Change the tool to one of {1e3 * other:g} mm radius and press {pressed}{longer}."
+    segments = _press(usual.depth if depth is None else depth, usual.speed, hold)
     return Experiment(name, words, segments, {"tool_radius": _mm(other)}, TOOL_MINUTES, other)
 
 

@@ -33,6 +33,7 @@ from benchmark.experiments.menu import (
     ruler_image,
     same_again,
     second_tools,
+    shallower,
 )
 from benchmark.files import Setup
 from benchmark.physics.description import Sign
@@ -271,7 +272,8 @@ def _tools(
     first: Rival, second: Rival, condition: ConditionData, table_of: TableOf, allowed: Allowed, workers: int
 ) -> Seen:
     """Other tools, each with the elastic answer of the specimen under it."""
-    wanted = second_tools(usual_press(condition), condition.tool.radius, allowed.radii)
+    usual, radius = usual_press(condition), condition.tool.radius
+    wanted = second_tools(usual, radius, allowed.radii)
     experiments = [each for each in wanted if each.name not in allowed.done]
     tools = [condition.tool.model_copy(update={"radius": each.tool_radius}) for each in experiments]
     specimen, _, support = condition.setup
@@ -283,10 +285,25 @@ def _tools(
         if table is None:
             continue
         pair = [under(rival, condition.name, tool, table) for rival in (first, second)]
-        size = _simulated(pair[0], pair[1], condition, experiment, allowed.most_force)
+        depth = _bearable(pair[0], condition, experiment, allowed.most_force)
+        borne = experiment if depth is None else shallower(usual, radius, experiment, depth)
+        size = _simulated(pair[0], pair[1], condition, borne, allowed.most_force)
         if size is not None:
-            out[experiment.name] = (experiment, size)
+            out[experiment.name] = (borne, size)
     return out
+
+
+def _bearable(rival: Rival, condition: ConditionData, experiment: Experiment, most_force: float) -> float | None:
+    """Depth, m, at which a rival expects as much force as may be proposed; None where the experiment stays below it."""
+    time, depth = motion(experiment, ROWS)
+    try:
+        force = expected(rival, condition.name, time, depth).signals[:, 0]
+    except (InputError, ValueError, ArithmeticError):
+        return None
+    first = int(np.argmax(force > SPARE * most_force))
+    if first == 0:
+        return None
+    return float(np.interp(SPARE * most_force, force[first - 1 : first + 1], depth[first - 1 : first + 1]))
 
 
 def _table_under(job: tuple[TableOf, Setup, float]) -> ElasticTable | None:

@@ -1,3 +1,4 @@
+import math
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -8,6 +9,7 @@ from benchmark.discovery.discovery_result import PHASES
 from benchmark.discovery.planning import proposing
 from benchmark.discovery.planning.proposing import (
     Allowed,
+    _bearable,
     _calibrations,
     _distinct,
     _own_condition,
@@ -15,7 +17,17 @@ from benchmark.discovery.planning.proposing import (
     propose,
     usual_press,
 )
-from benchmark.experiments.menu import menu, minutes, protocol_toml, rigid_block, same_again
+from benchmark.experiments.menu import (
+    Usual,
+    menu,
+    minutes,
+    motion,
+    protocol_toml,
+    rigid_block,
+    same_again,
+    second_tools,
+    shallower,
+)
 from benchmark.physics import Effect, TrialContext, catalogue
 
 
@@ -49,7 +61,7 @@ def _rival(*slugs: str, **values: dict[str, float]) -> SimpleNamespace:
 def test_the_usual_press_is_read_off_the_trials() -> None:
     usual = usual_press(_condition("bonded"))
     assert usual.depth == pytest.approx(2e-3)
-    assert usual.speed == pytest.approx(1e-3, rel=0.02)
+    assert usual.speed == pytest.approx(1e-3)
     assert usual.hold == pytest.approx(6.0, abs=0.2)
     assert usual.thickness == 4e-3
     assert usual_press(_condition("hole")).thickness == np.inf
@@ -192,6 +204,20 @@ def test_where_trials_agree_or_a_bench_cannot_nothing_is_shown(monkeypatch) -> N
     assert propose(_found(SimpleNamespace(conditions=(_unheld(),)), "named")) is None  # all were looked for
     monkeypatch.setattr(proposing, "_simulated", lambda *_: None)  # too much force
     assert propose(_found(SimpleNamespace(conditions=(_unheld(),)), "named", catalogue())) is None
+
+
+def test_a_tool_that_would_press_too_hard_is_pressed_less_deep(monkeypatch) -> None:
+    monkeypatch.setattr(proposing, "expected", lambda *given: SimpleNamespace(signals=8e3 * given[3][:, None]))
+    usual = Usual(2e-3, 1e-3, 5.0, math.inf)
+    wider, condition = second_tools(usual, 5e-3)[0], SimpleNamespace(name="slow")
+    assert _bearable(_rival("slip"), condition, wider, 20.1) is None  # 16 N, of which 0.8 are allowed
+    depth = _bearable(_rival("slip"), condition, wider, 10.0)
+    assert depth == pytest.approx(1e-3)
+    less = shallower(usual, 5e-3, wider, depth)
+    assert (less.name, less.tool_radius) == (wider.name, wider.tool_radius)
+    assert 0.0 < motion(less, 400)[1].max() <= 1e-3
+    assert "since deeper would be too hard" in less.words
+    assert "hold for 12.8 s" in less.words
 
 
 def test_a_rigid_block_is_for_a_rig_that_gives_way() -> None:
