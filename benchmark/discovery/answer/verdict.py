@@ -99,7 +99,8 @@ class Facts:
     @property
     def by_rows(self) -> bool:
         """Whether trials surely share a misfit row by row, beside what effects there are."""
-        return self.p_shared < self.level and self.shared > criteria.SHARED
+        least = criteria.SHARED_BESIDE if self.effects else criteria.SHARED
+        return self.p_shared < self.level and self.shared > least
 
     @property
     def by_cells(self) -> bool:

@@ -77,6 +77,13 @@ def test_what_trials_share_row_by_row_is_no_agreement_and_no_name_where_it_is_mu
     assert verdict(facts(left=0.02, **rows)) == "named"
 
 
+@pytest.mark.parametrize(("shared", "word"), [(318.0, "partly_explained"), (207.0, "named")])
+def test_beside_an_effect_less_shared_misfit_shows_that_it_is_not_all(shared, word):
+    """What a snap-through called a floor left, and the most that a right name did."""
+    assert verdict(facts(left=0.2, p_shared=0.004, shared=shared)) == word
+    assert verdict(facts(effects=(), p=0.4, p_cells=0.4, p_shared=0.004, shared=shared)) == "no_discrepancy"
+
+
 def test_an_answer_that_misses_by_more_than_the_tolerance_is_not_all():
     made = facts(fitted=False)
     assert verdict(made) == "partly_explained"
