@@ -1,18 +1,22 @@
 """Result folders of long computations that go on where they were stopped: whose the files are, and the journal.
 
-A journal has one line of JSON for each finished row, on disk before the next one counts. A line that a crash cut off is
-dropped when the journal is read again; its row is then computed anew.
+A journal has one line of JSON for each finished row, on disk before the next one counts, with the SHA-256 of the row.
+A line that a crash cut off, or that was changed since, is dropped when the journal is read again; its row is then
+computed anew. What goes on must be of the same code, or the rows would be of two: `code_version`.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict
+from functools import cache
+from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from benchmark.errors import InputError
 from benchmark.runs.output.destination import destination
@@ -25,6 +29,19 @@ if TYPE_CHECKING:
 
 RowType = TypeVar("RowType")
 MOST_NAMED = 5
+CODE = ("benchmark", "fem", "wavemodel")
+SEAL = "sha256"
+"""Key of a row's hash in the journal; journals of earlier versions have none."""
+
+
+@cache
+def code_version() -> str:
+    """Hash of the code that a result follows from, and the versions of what it computes with."""
+    digest = hashlib.sha256(" ".join(version(name) for name in ("numpy", "scipy", "scikit-fem")).encode())
+    root = Path(__file__).parents[1]
+    for file in sorted(file for package in CODE for file in (root / package).rglob("*.py")):
+        digest.update(file.relative_to(root).as_posix().encode() + file.read_bytes())
+    return digest.hexdigest()
 
 
 def check_files(path: Path, files: Collection[str], *, resumed: bool, no: str) -> None:
@@ -105,16 +122,35 @@ def going_on(path: Path) -> Iterator[None]:
         ) from error
 
 
-def read_rows(path: Path, row_type: Callable[..., RowType]) -> Iterator[RowType]:
-    """The whole rows of a journal, made by `row_type` from their fields; none without a journal."""
+def read_rows(
+    path: Path, row_type: Callable[..., RowType], say: Callable[[str], None] = lambda _: None
+) -> Iterator[RowType]:
+    """The whole rows of a journal, made by `row_type` from their fields; none without a journal.
+
+    `say` is told of each row that was changed since it was written, which is none.
+    """
     if not path.exists():
         return
     whole, _, _ = path.read_bytes().rpartition(b"\n")
-    for line in whole.splitlines():
+    for number, line in enumerate(whole.splitlines(), 1):
         try:
-            yield row_type(**json.loads(line))
-        except (ValueError, TypeError):
+            table = json.loads(line)
+            seal = table.pop(SEAL, None)
+            row = row_type(**table)
+        except (ValueError, TypeError, AttributeError, RecursionError):
             continue
+        if seal is None or seal == _seal(table):
+            yield row
+        else:
+            say(f"{path} line {number} was changed since it was written ({SEAL} differs): its row does not count")
+
+
+def _text(table: dict[str, Any]) -> str:
+    return json.dumps(table, ensure_ascii=False, allow_nan=False)
+
+
+def _seal(table: dict[str, Any]) -> str:
+    return hashlib.sha256(_text(table).encode()).hexdigest()
 
 
 class Journal:
@@ -126,7 +162,8 @@ class Journal:
 
     def add(self, row: DataclassInstance) -> None:
         """Write one row through to the disk."""
-        line = json.dumps(asdict(row), ensure_ascii=False, allow_nan=False)
+        table = asdict(row)
+        line = _text({**table, SEAL: _seal(table)})
         self._stream.write(self._ending + line.encode() + b"\n")
         self._ending = b""
         self._stream.flush()

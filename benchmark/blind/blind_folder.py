@@ -14,7 +14,7 @@ from benchmark.blind.scoring.measure_rows import BlindRow
 from benchmark.blind.scoring.scoreboard import scoreboard
 from benchmark.blind.suites import MIXED
 from benchmark.errors import InputError
-from benchmark.resumable import begun, check_files
+from benchmark.resumable import begun, check_files, code_version
 from benchmark.runs.output.destination import check_ready
 from benchmark.runs.output.document import describe_environment
 from reports import extended_folder, write_csv, write_json, write_page, write_text
@@ -37,23 +37,24 @@ def open_folder(path: Path, settings: dict[str, Any]) -> Path:
     Raises
     ------
     InputError
-        The folder holds something else, or a stopped run with other settings.
+        The folder holds something else, or a stopped run with other settings or of other code.
     """
     check_ready(path)
     manifest = read_manifest(path)
     stopped = manifest is not None and JOURNAL in manifest.growing
     check_files(path, FILES, resumed=stopped, no="no blind run")
-    there = _settings_in(path)
-    if stopped and there != settings:
+    there, asked = _settings_in(path), {**settings, "code_sha256": code_version()}
+    if stopped and there != asked:
+        other = "other settings" if there is None or {**there, **settings} != there else "other code of the program"
         raise InputError(
-            f"--out {path} holds a stopped blind run with other settings ({there}); repeat that command to go on with "
+            f"--out {path} holds a stopped blind run with {other} ({there}); repeat that command to go on with "
             "it, or give another folder"
         )
     if stopped:
         clear_leftovers(path)
         return path / JOURNAL
     with begun(path, "blind run", (JOURNAL,)) as new:
-        write_json(new / SETTINGS, settings)
+        write_json(new / SETTINGS, asked)
     return path / JOURNAL
 
 

@@ -62,7 +62,7 @@ from benchmark.discovery.evidence.parameter_evidence import (
     undetermined,
     unsteady,
 )
-from benchmark.discovery.evidence.pool import Listener, Pool, code_version, fingerprint, own_code, pool, silent
+from benchmark.discovery.evidence.pool import Listener, Pool, fingerprint, own_code, pool, silent
 from benchmark.discovery.evidence.selection import Selection, first_gain, ruled_out, select, unchosen, usable
 from benchmark.discovery.evidence.shortlist import (
     compared,
@@ -80,6 +80,7 @@ from benchmark.files import Session
 from benchmark.physics import Effect, catalogue
 from benchmark.physics.setup_entry import setup_key
 from benchmark.response.elastic_table import TableOf
+from benchmark.resumable import code_version
 
 DEFAULT = Settings()
 MOST_CONFIDENCE = {"outside_catalogue": 0.0, "partly_explained": 0.5, "instrument_first": 0.5}

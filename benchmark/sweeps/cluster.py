@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
 from importlib import metadata
 from typing import Any, TypeVar
 
 from benchmark.errors import InputError
+from benchmark.resumable import code_version
 from benchmark.sweeps.point import PointResult, Task, evaluate, failed
 from reports.formatting import counted
 
@@ -55,7 +56,8 @@ def on_cluster(
     Raises
     ------
     ClusterError
-        Nobody answers there, a worker has another version of this program or none, or the scheduler is gone.
+        Nobody answers there, a worker has another version or other code of this program, or none, or the scheduler is
+        gone.
     """
     with _connected(address) as client:
         workers = _check_workers(client, address)
@@ -114,19 +116,25 @@ def _connected(address: str) -> Iterator[Any]:
 
 
 def _check_workers(client: Any, address: str) -> int:
-    """The number of workers; refuses those of another version. Workers that come later are taken as they are."""
-    own = metadata.version("tissuebench")
-    try:
-        versions = client.run(metadata.version, "tissuebench", on_error="return")
-    except OSError:
-        raise ClusterError(f"the Dask scheduler at {address} is gone") from None
-    for worker, version in versions.items():
-        if version != own:
-            raise ClusterError(
-                f"--scheduler {address}: the worker {worker} answers {version!r} when asked for its tissuebench; "
-                f"allowed: version {own}, as here"
-            )
-    return len(versions)
+    """The number of workers; refuses those of another version or other code. Workers that come later are not asked."""
+    asked: Mapping[str, tuple[str, Callable[..., str], tuple[str, ...]]] = {
+        "its tissuebench": ("version ", metadata.version, ("tissuebench",)),
+        "the code of its tissuebench (SHA-256)": ("", code_version, ()),
+    }
+    answers: Mapping[str, Any] = {}
+    for what, (kind, function, arguments) in asked.items():
+        own = function(*arguments)
+        try:
+            answers = client.run(function, *arguments, on_error="return")
+        except OSError:
+            raise ClusterError(f"the Dask scheduler at {address} is gone") from None
+        for worker, answer in answers.items():
+            if answer != own:
+                raise ClusterError(
+                    f"--scheduler {address}: the worker {worker} answers {answer!r} when asked for {what}; "
+                    f"allowed: {kind}{own}, as here"
+                )
+    return len(answers)
 
 
 def _fault(error: BaseException | None) -> str:

@@ -13,11 +13,14 @@ from typing import Any
 
 from benchmark.errors import InputError
 from benchmark.files import Scenario, load_scenario
+from benchmark.resumable import code_version
 from benchmark.sweeps.design import Design, Point
 from benchmark.sweeps.parameter import Parameter
 
 SCHEMA = 1
 MOST_DIFFERENCES = 3
+CODE = "code_sha256"
+"""Key of the code's hash in `sweep.json`; those of earlier versions have none."""
 READ = ("tissue", "load.file")
 """Keys whose values name files."""
 
@@ -53,6 +56,7 @@ class SweepPlan:
         return {
             "schema": SCHEMA,
             "program": metadata.version("tissuebench"),
+            CODE: code_version(),
             "scenario": self.scenario.to_table(),
             "vary": {parameter.key: parameter.describe() for parameter in self.parameters},
             "sample": self.design.kind,

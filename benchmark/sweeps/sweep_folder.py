@@ -16,7 +16,7 @@ from benchmark.resumable import Journal, begun, check_files, read_rows
 from benchmark.runs.output.unfinished import is_kept
 from benchmark.sweeps.design import Point
 from benchmark.sweeps.parameter import Parameter
-from benchmark.sweeps.plan import SCHEMA, SweepPlan, differences
+from benchmark.sweeps.plan import CODE, SCHEMA, SweepPlan, differences
 from benchmark.sweeps.point import PointResult
 from reports import extended_folder, write_json, write_text
 from reports.manifest import MANIFEST, read_manifest, remove_known
@@ -73,12 +73,17 @@ SHARE = 0.02
 
 
 class SweepFolder:
-    """Finished points on disk: each in the journal at once, in `points.parquet` soon after."""
+    """Finished points on disk: each in the journal at once, in `points.parquet` soon after.
+
+    `changed` tells which lines of the journal were changed since they were written; their points are not finished.
+    """
 
     def __init__(self, path: Path, plan: SweepPlan, journal: Journal):
         self.path = path
         self._plan, self._journal = plan, journal
-        self.finished: dict[int, PointResult] = {row.point: row for row in read_rows(path / JOURNAL, PointResult)}
+        self.changed: list[str] = []
+        rows = read_rows(path / JOURNAL, PointResult, self.changed.append)
+        self.finished: dict[int, PointResult] = {row.point: row for row in rows}
         self._due = 0.0
 
     @property
@@ -156,7 +161,13 @@ def _check_holds(path: Path, plan: SweepPlan) -> None:
         there = _read_plan(path / PLAN)
         if there.get("schema") != SCHEMA:
             raise InputError(f"{path / PLAN} has the schema {there.get('schema')!r}; this version reads {SCHEMA}")
-        apart = differences(there, json.loads(json.dumps(plan.document)))
+        here = json.loads(json.dumps(plan.document))
+        apart = differences(there, here)
+        if apart and {**there, CODE: None} == {**here, CODE: None}:
+            raise InputError(
+                f"--out {path} holds this sweep, begun by other code of the program: {apart[0]}; its rows would be of "
+                "two codes. Give another --out, or go on with it by the code that began it"
+            )
         if apart:
             raise InputError(
                 f"--out {path} holds another sweep; it differs in {', '.join(apart)}. Give another --out, or the same "

@@ -123,6 +123,8 @@ def _finish(folder: SweepFolder, plan: SweepPlan, request: SweepRequest, listene
         listener.say(f"{folder.path}: {done} of {total} points are there already")
     if not missing:
         return
+    for each in folder.changed:
+        listener.say(each)
     say_unusable(missing, plan, listener.say)
     with listener.progress(f"{plan.scenario.name}: {len(missing)} points") as advance:
         progress = SweepProgress(total, done, advance)

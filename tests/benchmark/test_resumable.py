@@ -1,6 +1,7 @@
 """The journal: what is whole in it is kept, wherever a crash cut it."""
 
 import errno
+import json
 from pathlib import Path
 
 import pytest
@@ -66,6 +67,19 @@ def test_lines_of_something_else_are_passed_over(tmp_path: Path) -> None:
     path = written(tmp_path / "j")
     path.write_bytes(b'\x00\x00\n{"point": 9}\n[1]\n' + path.read_bytes())
     assert read(path) == {row.point: row for row in ROWS}
+
+
+def test_a_changed_row_is_none_and_said_and_one_without_a_checksum_is_read(tmp_path: Path) -> None:
+    path = written(tmp_path / "j")
+    said: list[str] = []
+    path.write_text(path.read_text().replace("the\\ttab", "another"))
+    assert [row.point for row in read_rows(path, PointResult, said.append)] == [2, 3]
+    assert len(said) == 1
+    assert f"{path} line 1 was changed" in said[0]
+    rows = [json.loads(line) for line in path.read_text().splitlines()]
+    assert all(row.pop("sha256") for row in rows)
+    path.write_text("".join(json.dumps(row) + "\n" for row in rows))
+    assert len(read(path)) == 3
 
 
 def test_a_full_disk_says_what_stays_and_how_to_go_on(tmp_path: Path) -> None:

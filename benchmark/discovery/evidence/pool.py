@@ -12,8 +12,6 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass, field, fields
-from functools import cache
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 from weakref import WeakKeyDictionary
@@ -33,7 +31,6 @@ from reports.manifest import remove_known
 ARRAYS = ("vector", "nuisance", "objective", "precision", "prior_mean")
 KEPT = re.compile(r"[0-9a-f]{24}\.(?:npz|json|part)|\.[0-9a-f]{24}\.npz\.[0-9a-f]{8}\.part")
 """Names of the files in which fits are kept, those of earlier versions among them."""
-CODE = ("benchmark", "fem", "wavemodel")
 
 Listener = Callable[[str, int, int, str], None]
 """Called with stage, done, total and the best so far."""
@@ -203,13 +200,3 @@ def own_code(effect: Effect) -> tuple[str, str]:
     """What a user's effect says of itself and the text it was loaded from."""
     text = Path(effect.origin).read_bytes() if effect.origin else b""
     return repr(effect.description), hashlib.sha256(text).hexdigest()
-
-
-@cache
-def code_version() -> str:
-    """Hash of the code that a fit follows from, and the versions of what it computes with."""
-    digest = hashlib.sha256(" ".join(version(name) for name in ("numpy", "scipy")).encode())
-    root = Path(__file__).parents[3]
-    for file in sorted(file for package in CODE for file in (root / package).rglob("*.py")):
-        digest.update(file.relative_to(root).as_posix().encode() + file.read_bytes())
-    return digest.hexdigest()

@@ -115,6 +115,29 @@ def test_another_sweep_is_refused_with_the_difference(plan_of, tmp_path: Path, v
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
+def test_the_same_sweep_of_other_code_is_refused(plan_of, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with open_folder(tmp_path, plan_of(VARY)) as folder:
+        folder.add(ROW)
+    before = tree(tmp_path)
+    monkeypatch.setattr("benchmark.sweeps.plan.code_version", lambda: "another")
+    match = r"begun by other code of the program: code_sha256 \(.* there, 'another' here\).* another --out"
+    with pytest.raises(InputError, match=match), open_folder(tmp_path, plan_of(VARY)):
+        pass
+    assert tree(tmp_path) == before
+
+
+def test_a_row_changed_by_hand_is_computed_again(plan_of, tmp_path: Path) -> None:
+    with open_folder(tmp_path, plan_of(VARY)) as folder:
+        all_points(folder)
+        folder.add(ROW)
+    journal = tmp_path / "journal.jsonl"
+    journal.write_text(journal.read_text().replace('"x_mm": 1.0', '"x_mm": 7.0').replace("no luck", "bad luck", 1))
+    with open_folder(tmp_path, plan_of(VARY)) as folder:
+        assert {*folder.finished} == {2, 3}
+        assert folder.finished[2].status == "failed"
+        assert [said.partition(" was changed")[0] for said in folder.changed] == [f"{journal} line {n}" for n in (1, 4)]
+
+
 def test_a_folder_of_something_else_is_refused(plan_of, tmp_path: Path) -> None:
     (tmp_path / "thesis.tex").write_text("years of work")
     with pytest.raises(InputError, match="not a sweep"), open_folder(tmp_path, plan_of(VARY)):
