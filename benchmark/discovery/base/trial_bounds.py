@@ -7,7 +7,7 @@ is late by a sample or two. Gain and marker zeros have priors alone.
 from __future__ import annotations
 
 import numpy as np
-from scipy.stats import kendalltau, norm, t
+from scipy.stats import kendalltau, studentized_range
 
 from benchmark.discovery import criteria
 from benchmark.discovery.base.trials_problem import OWN, TrialRef, TrialsProblem
@@ -222,15 +222,16 @@ def _gains_between(problem: TrialsProblem, gain: Array) -> tuple[str, ...]:
     stiff, soft, apart = parted
     return (
         f"the trials' own gains are {100.0 * np.expm1(apart):.2g} % larger in {stiff} than in {soft}: what makes one "
-        "condition stiffer beside the other, as a rig that gives way or another size of a tool does, is in them, and "
-        "is not looked for",
+        "condition stiffer beside the other, as a rig that gives way, another size of a tool, or a specimen that dries "
+        "from trial to trial does, is in them, and is not looked for",
     )
 
 
 def gains_between(problem: TrialsProblem, gain: Array) -> tuple[str, str, float] | None:
     """The stiffest and the softest condition by log gains (R,), and how far apart, where that is no scatter of trials.
 
-    Student's quantile at the level of `TOGETHER` normal standard errors, and a share by which told tools may be off.
+    Tukey's range of the conditions' means, or gains that go one way through the session (a specimen that dries, a gain
+    that drifts), whose trend within conditions is no scatter; and a share by which told tools may be off.
     """
     groups, kinds = _repeated(problem)
     if len(kinds) < 2:
@@ -238,8 +239,12 @@ def gains_between(problem: TrialsProblem, gain: Array) -> tuple[str, str, float]
     mean = {k: float(gain[groups == k].mean()) for k in kinds}
     least, most = min(kinds, key=mean.__getitem__), max(kinds, key=mean.__getitem__)
     apart, freedom = mean[most] - mean[least], gain.size - np.unique(groups).size
-    sure = float(t.isf(norm.sf(criteria.TOGETHER), freedom)) * _error(gain, groups, (least, most))
-    if apart <= max(sure, np.log1p(criteria.PARTED)):
+    if apart <= np.log1p(criteria.PARTED):
+        return None
+    error = max(_error(gain, groups, (least, most)), np.finfo(float).tiny)
+    by_range = float(studentized_range.sf(np.sqrt(2.0) * apart / error, len(kinds), freedom))
+    by_order = float(kendalltau([trial.number for trial in problem.trials], gain).pvalue)
+    if min(by_range, by_order) > criteria.PARTED_P:
         return None
     names = [problem.study.conditions[k].name for k in (most, least)]
     return names[0], names[1], apart

@@ -8,6 +8,7 @@ import pytest
 from benchmark.discovery import criteria
 from benchmark.discovery.base.effect_model import EffectModel, fit
 from benchmark.discovery.base.trial_bounds import (
+    gains_between,
     large_remarks,
     late_by_speed,
     touch_range,
@@ -148,13 +149,20 @@ def test_time_shifts_that_trials_share_are_said(problem, slow, fast, words):
 
 @pytest.mark.parametrize(
     ("apart", "scatter", "said"),
-    [(0.3, 0.01, True), (0.08, 0.01, False), (0.08, 0.005, True), (0.04, 0.001, False), (0.3, 0.06, False)],
+    [(0.3, 0.01, True), (0.08, 0.02, False), (0.08, 0.01, True), (0.04, 0.001, False), (0.3, 0.06, False)],
 )
 def test_gains_that_part_conditions_are_said(problem, apart, scatter, said):
     own = np.zeros((6, len(OWN)))
     own[:, OWN.index("gain")] = np.repeat([0.0, np.log1p(apart)], 3) + scatter * np.tile([-1.0, 1.0, 0.0], 2)
     words = f"gains are {100.0 * apart:.2g} % larger in speed 6 than in speed 1.5: what makes one condition stiffer"
     assert any(words in text for text in large_remarks(problem, own)) is said
+
+
+def test_a_specimen_that_dries_through_the_session_parts_its_conditions(problem):
+    drying = 0.02 * np.arange(6.0)
+    assert gains_between(problem, drying) == ("speed 6", "speed 1.5", pytest.approx(0.06))
+    assert gains_between(problem, drying[[1, 0, 2, 3, 5, 4]]) is None  # in no sure order, and within its scatter
+    assert gains_between(problem, 0.01 * np.arange(6.0)) is None  # less than a told tool may be off by
 
 
 @pytest.mark.parametrize(
