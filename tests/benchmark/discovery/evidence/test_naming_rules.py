@@ -673,6 +673,27 @@ def test_a_share_that_trades_with_a_width_is_told_by_what_both_take_off_the_forc
     assert undetermined(made) == (() if told else ("one",))
 
 
+REACH = EffectParameter("reach", "m", (1e-3,), 1e-5, 0.1, True, "how far a pull goes before it lets go")
+
+
+def test_a_pull_that_trades_with_its_reach_is_told_where_it_lets_go_a_little_further():
+    """Its reach has the error of its prior, far more than the way on which what it adds is straight."""
+    one = strong(amplitude="force", amplitudes=())
+    made = Told((2.0, 0.0), (5.0**2, 2.5**2), FORCE, REACH)
+    made.covariance[0, 1] = made.covariance[1, 0] = 0.9999 * 5.0 * 2.5
+    made.nuisance, made.model.effects = None, (one,)
+    made.model.bounds = (np.array([0.0, -9.0]), np.array([100.0, 3.0]))
+    depth = np.linspace(0.0, 1.0, 5)
+
+    def signals(vector, _):
+        held = vector[0] * (np.exp(-vector[1]) if vector[1] < 0.02 else 0.3)
+        return [(depth * (10.0 - held * (depth == depth[2])))[:, None]] * 3
+
+    made.model.signals = signals
+    assert not determined(made, one)
+    assert strength_told(made, one)
+
+
 @pytest.mark.parametrize(("slug", "told"), [("stress_softening", True), ("setup.tool.contact", False)])
 def test_what_a_set_up_entry_adds_does_not_tell_its_number(slug, told, monkeypatch):
     monkeypatch.setattr(parameter_evidence, "determined", lambda fit, effect: False)
