@@ -96,6 +96,12 @@ def foreign_files(folder: Path) -> list[str]:
     return found
 
 
+def changed_files(folder: Path) -> list[str]:
+    """Paths of the files in a folder of ours that are not as we wrote them; none for a folder that is not ours."""
+    manifest = read_manifest(folder) or Manifest()
+    return [name for name in foreign_files(folder) if name in manifest.files]
+
+
 def refuse_foreign(folder: Path, shown: object = None, names: Collection[str] | None = None) -> None:
     """Raise ForeignFilesError where something in `folder`, in messages `shown`, is not ours.
 

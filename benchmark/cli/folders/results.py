@@ -10,7 +10,6 @@ import typer
 from benchmark.cli.options import Debug, Json, Out, Quiet
 
 if TYPE_CHECKING:
-    from benchmark.cli.console import Console
     from benchmark.gate.history.history_page import HistoryOutcome
     from benchmark.runs.finished import ReportOutcome
 
@@ -44,7 +43,10 @@ def report(runs: Runs, out: Out = None, json: Json = False, quiet: Quiet = False
     from benchmark.cli.show import print_json
 
     history = len(runs) == 1 and runs[0].suffix == HISTORY
-    outcome = _history(runs[0], out, Console(quiet=quiet)) if history else _of_runs(runs, out)
+    outcome = _history(runs[0], out) if history else _of_runs(runs, out)
+    console = Console(quiet=quiet)
+    for warning in outcome.warnings:
+        console.say(f"  warning: {warning}")
     if json:
         print_json({**outcome.document, "out": str(outcome.folder)})
     else:
@@ -58,14 +60,10 @@ def _of_runs(runs: list[Path], out: Path | None) -> ReportOutcome:
     return page_again(runs[0], out) if len(runs) == 1 else compare_runs(runs, out)
 
 
-def _history(path: Path, out: Path | None, console: Console) -> HistoryOutcome:
-    """Make the page of a history, and say what of it could not be read."""
+def _history(path: Path, out: Path | None) -> HistoryOutcome:
     from benchmark.gate.history.history_page import write_history
 
-    outcome = write_history(path, out)
-    for warning in outcome.warnings:
-        console.say(f"  warning: {warning}")
-    return outcome
+    return write_history(path, out)
 
 
 def dossier(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,11 +19,12 @@ from reports import csv_text, extended_folder, write_json, write_page, write_tex
 
 @dataclass(frozen=True)
 class ReportOutcome:
-    """A page on disk: its folder, what it says in one sentence, and the same for programs."""
+    """A page on disk: its folder, what it says in one sentence, the same for programs, and what must be known first."""
 
     folder: Path
     headline: str
     document: dict[str, Any]
+    warnings: tuple[str, ...] = ()
 
 
 def page_again(folder: Path, out: Path | None) -> ReportOutcome:
@@ -42,23 +43,29 @@ def _page_again(folder: Path, out: Path | None) -> ReportOutcome:
     target = folder if out is None else destination(out, "", (folder,))
     run = read_run(folder)
     drawn = read_drawn(folder)
-    picture = pressed_picture(run.record, drawn)
+    picture, warnings = pressed_picture(run.record, drawn), _changed([run])
     page = run_page(run.record, run.environment, run.tables, run.trials, run.columns, picture)
     if out is None:
         with extended_folder(folder) as new:
             write_page(new / "report.html", page)
-        return ReportOutcome(folder, page.verdict.headline, run.document)
+        return ReportOutcome(folder, page.verdict.headline, run.document, warnings)
 
     def fill(new: Path) -> None:
         for name, text in run.tables.items():
             write_text(new / "tables" / name, text)
         for name in ("results.json", "environment.json", "scenario.toml"):
             write_text(new / name, (folder / name).read_text(encoding="utf-8"))
+        if warnings:
+            write_json(new / "results.json", run.document)
         write_drawn(new, drawn)
         write_page(new / "report.html", page)
 
     write_whole(target, fill)
-    return ReportOutcome(target, page.verdict.headline, run.document)
+    return ReportOutcome(target, page.verdict.headline, run.document, warnings)
+
+
+def _changed(runs: Iterable[SavedRun]) -> tuple[str, ...]:
+    return tuple(run.changed for run in runs if run.changed)
 
 
 @dataclass(frozen=True)
@@ -120,7 +127,7 @@ def write_side_by_side(compared: RunsSideBySide, out: Path | None) -> ReportOutc
         write_page(new / "report.html", page)
 
     write_whole(target, fill)
-    return ReportOutcome(target, page.verdict.headline, document)
+    return ReportOutcome(target, page.verdict.headline, document, _changed(runs.values()))
 
 
 def _labels(folders: Sequence[Path]) -> list[str]:

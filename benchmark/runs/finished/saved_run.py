@@ -21,6 +21,7 @@ from benchmark.runs.record import RunRecord, compare_layers
 from benchmark.runs.report.run_page import CONDITIONS, REFINEMENT, VALIDATION
 from benchmark.runs.report.trials_section import TrialsPart
 from benchmark.side_by_side import NAMES, ModelRun, Seconds, SideBySide, speedup
+from reports.manifest import PAGE, changed_files
 
 STOPPED = re.compile(
     r"step (?P<step>\d+) at (?P<time>\S+) s: the load (?P<target>\S+) (?P<unit>\S+) could not be reached, "
@@ -40,13 +41,15 @@ class SavedRun:
     record
         What it found; without the trials behind it, which `trials` has.
     document, environment
-        Content of `results.json` and `environment.json`.
+        Content of `results.json`, with `changed` among its warnings, and `environment.json`.
     tables
         The text of each table by file name.
     trials
         Measured trials, where there were any.
     columns
         Of `validation.csv` and `refinement.csv`, where there are any.
+    changed
+        That files are not as they were written, by name; empty where all are.
     """
 
     folder: Path
@@ -56,6 +59,7 @@ class SavedRun:
     tables: dict[str, str]
     trials: TrialsPart | None
     columns: dict[str, dict[str, list[Any]]]
+    changed: str
 
 
 def read_run(folder: Path) -> SavedRun:
@@ -68,8 +72,9 @@ def read_run(folder: Path) -> SavedRun:
     """
     document, environment = (_document(folder, name) for name in ("results.json", "environment.json"))
     scenario = load_scenario(folder / "scenario.toml")
-    tables = SavedTables(folder)
+    tables, changed = SavedTables(folder), _changed(folder)
     try:
+        document |= {"warnings": [*document["warnings"], *filter(None, [changed])]}
         record = _record(scenario, document, tables, int(environment["seed"]))
         trials = saved_trials(document, tables, folder / "markers") if "trials" in document else None
     except (KeyError, ValueError, TypeError, OSError) as error:
@@ -78,7 +83,13 @@ def read_run(folder: Path) -> SavedRun:
             "result of a run"
         ) from None
     columns = {name: tables.read(name).plain() for name in (VALIDATION, CONDITIONS, REFINEMENT) if tables.has(name)}
-    return SavedRun(folder, record, document, environment, tables.texts(), trials, columns)
+    return SavedRun(folder, record, document, environment, tables.texts(), trials, columns, changed)
+
+
+def _changed(folder: Path) -> str:
+    """Which files of a run, its page apart, are not as they were written; empty where all are."""
+    found = [name for name in changed_files(folder) if name != PAGE]
+    return f"{folder}: not as they were written: {', '.join(found)}; what follows is of the changed files" * bool(found)
 
 
 def _document(folder: Path, name: str) -> dict[str, Any]:

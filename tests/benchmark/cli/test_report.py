@@ -2,6 +2,7 @@
 
 import base64
 import json
+import shutil
 from pathlib import Path
 
 import pandas as pd
@@ -77,6 +78,25 @@ def test_side_by_side_names_what_changed(benchmark_cli, runs, tmp_path: Path) ->
     for text in ("first, FEM", "first, wave model", "second, FEM", "Change against first"):
         assert text in page
     assert "second, wave model" not in page
+
+
+def test_files_changed_by_hand_are_named_and_stay_so_in_a_copy(benchmark_cli, runs, tmp_path: Path) -> None:
+    """A run whose results were edited was shown, and compared, as if they were its own."""
+    edited, copy = tmp_path / "edited", tmp_path / "copy"
+    shutil.copytree(runs[0], edited)
+    for name in ("results.json", "scenario.toml", "notes.txt"):
+        with (edited / name).open("a") as stream:
+            stream.write("\n")
+    said = f"{edited}: not as they were written: results.json, scenario.toml; what follows is of the changed files"
+    for words in ((edited, "--out", copy), (edited,), (runs[1], edited, "--out", tmp_path / "both")):
+        called = benchmark_cli("report", *words)
+        assert (called.code, called.err) == (0, f"  warning: {said}\n")
+    for page in (copy, edited, tmp_path / "both"):
+        assert said in (page / "report.html").read_text()
+    assert json.loads((copy / "results.json").read_text())["warnings"][-1] == said
+    assert benchmark_cli("report", copy).err == ""
+    assert (copy / "report.html").read_text().count(said) == 1
+    assert benchmark_cli("report", *runs, "--out", tmp_path / "untouched").err == ""
 
 
 @pytest.mark.usefixtures("undrawn")
