@@ -24,7 +24,7 @@ from benchmark.identification.parameters.law_selection import scores, simplest
 from benchmark.identification.parameters.law_shapes import law_shape
 from benchmark.identification.parameters.layer_fit import SEARCH, LayerFit, begun, fit_layers
 from benchmark.identification.parameters.other_answers import other_answers
-from benchmark.identification.parameters.posterior import posterior
+from benchmark.identification.parameters.posterior import load_emcee, posterior
 from benchmark.identification.parameters.pressed_set_ups import followed
 from benchmark.identification.parameters.presses.press_surrogate import PressSurrogate
 from benchmark.identification.parameters.session_problem import (
@@ -115,6 +115,8 @@ class ParameterWish:
         table, setup = self.table(session.fit), session.setups[0]
         if not table.free and (self.sessions or table.law is not None or self.posterior):
             raise InputError("several sessions, a law or a posterior need free parameters: give --free KEY,KEY")
+        if self.posterior:
+            load_emcee()
         for key in (key for key in table.free if key != EDGE_RADIUS):
             for law in self.laws or (table.law,):
                 parameters_of(key, setup, law)

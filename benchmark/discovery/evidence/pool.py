@@ -22,6 +22,7 @@ from bench_hw.storage.regular_file import TABLE, read_sealed, sealed
 from benchmark.child_processes import Mapped, PoolContext, begin_in_pool, single_threaded_children
 from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.base.effect_model import EffectModel, Fit
+from benchmark.models.user_file import modules_of
 from benchmark.physics import Effect, load_effects
 from benchmark.response.least_squares import Blocks
 from benchmark.response.trials_model import TrialColumns
@@ -197,6 +198,11 @@ def fingerprint(*parts: Any) -> str:
 
 
 def own_code(effect: Effect) -> tuple[str, str]:
-    """What a user's effect says of itself and the text it was loaded from."""
-    text = Path(effect.origin).read_bytes() if effect.origin else b""
-    return repr(effect.description), hashlib.sha256(text).hexdigest()
+    """What a user's effect says of itself, and a hash of its file and of the modules from that folder it imported."""
+    digest = hashlib.sha256()
+    if effect.origin:
+        file = Path(effect.origin)
+        digest.update(file.read_bytes())
+        for name, module in sorted(modules_of(file.parent).items()):
+            digest.update(name.encode() + b"\0" + (module.read_bytes() if module.is_file() else b""))
+    return repr(effect.description), digest.hexdigest()

@@ -12,8 +12,10 @@ correlated half as long as stretch moves. R-hat is that of split chains
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Sequence
 from dataclasses import dataclass
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -92,12 +94,7 @@ def posterior(found: LayerFit, seed: int) -> Posterior:
     InputError
         emcee is not installed.
     """
-    try:
-        import emcee
-    except ImportError:
-        raise InputError(
-            "--posterior draws with emcee, which is not installed; pip install emcee, or go without it"
-        ) from None
+    emcee = load_emcee()
     random = np.random.default_rng(seed)
     density = _Density(found)
     count = len(found.problem.parameters)
@@ -116,6 +113,22 @@ def posterior(found: LayerFit, seed: int) -> Posterior:
     ends = np.quantile(chains.reshape(-1, len(free)), [0.025, 0.975], axis=0)
     count = chains.shape[0] * chains.shape[1]
     return Posterior(chains, ends[0], ends[1], split_r_hat(chains), count / np.maximum(times, 1.0))
+
+
+def load_emcee() -> ModuleType:
+    """The package that draws.
+
+    Raises
+    ------
+    InputError
+        It is not installed.
+    """
+    try:
+        return importlib.import_module("emcee")
+    except ImportError:
+        raise InputError(
+            "--posterior draws with emcee, which is not installed; pip install emcee, or go without it"
+        ) from None
 
 
 def split_r_hat(chains: Array) -> Array:

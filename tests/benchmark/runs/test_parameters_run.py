@@ -5,6 +5,7 @@ import json
 import math
 import re
 import shutil
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -409,3 +410,12 @@ def test_what_goes_with_no_model_file_is_refused_before_anything_is_computed(
 def test_a_format_that_cannot_be_written_is_refused_before_anything_is_computed(session, tmp_path, nothing_computed):
     with pytest.raises(InputError, match="--export odb: no such format"):
         fit_to_folder(FitRequest(session, export=("odb",)), tmp_path / "out", Unheard())
+
+
+def test_a_posterior_without_emcee_is_refused_before_anything_is_computed(
+    session, tmp_path, nothing_computed, monkeypatch
+):
+    """The whole fit ran first, and left nothing."""
+    monkeypatch.setitem(sys.modules, "emcee", None)
+    with pytest.raises(InputError, match="emcee, which is not installed"):
+        fit(session, tmp_path / "out", ParameterWish(free=("silicone.youngs_modulus",), posterior=True))

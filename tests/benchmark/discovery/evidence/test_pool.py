@@ -1,8 +1,10 @@
 """A discovery that was interrupted, at whatever fit, ends with the answer it would have had, to the last bit."""
 
 import os
+import sys
 from concurrent.futures import Future
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,10 +15,10 @@ from benchmark.discovery.base.candidate_fit import fit_candidate
 from benchmark.discovery.criteria import Settings
 from benchmark.discovery.evidence import pool as module
 from benchmark.discovery.evidence.gains import foretold
-from benchmark.discovery.evidence.pool import Pool, forget, pool, silent, stored
+from benchmark.discovery.evidence.pool import Pool, forget, own_code, pool, silent, stored
 from benchmark.discovery.evidence.selection import select
 from benchmark.discovery.trials.preparing import prepare
-from benchmark.physics import catalogue
+from benchmark.physics import catalogue, load_effects
 
 SETTINGS = Settings(rows=40, workers=1, bootstraps=20, most_effects=2, accept_z=0.5)
 TRIED = ("viscous_damping", "machine_compliance", "viscoelastic_relaxation")
@@ -195,3 +197,19 @@ def test_processes_foretell_what_one_does(base):
     with pool(2, None, "key", (), silent) as work:
         together = foretold([replace(each) for each in made], work.map)
     np.testing.assert_array_equal(together, alone)
+
+
+def test_an_effect_is_known_by_what_its_file_imports_from_its_folder(tmp_path, monkeypatch) -> None:
+    """Fits of a changed helper were recalled as those of the one before."""
+    own = (Path(__file__).parents[4] / "examples/own_effect.py").read_text()
+    (tmp_path / "own.py").write_text(f"import effect_helper\n{own}")
+    (tmp_path / "effect_helper.py").write_text("FACTOR = 1\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    (effect,) = load_effects(tmp_path / "own.py")
+    before = own_code(effect)
+    (tmp_path / "unused.py").write_text("FACTOR = 1\n")
+    assert own_code(effect) == before
+    (tmp_path / "effect_helper.py").write_text("FACTOR = 2\n")
+    assert own_code(effect) != before
+    sys.modules.pop("effect_helper")
