@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from bench_hw.errors import InputError, TableError
 from bench_hw.instrument_files import PressRecord, Told, is_plain_trial, read_instrument_file
 from bench_hw.instrument_files.text_sheet import Cell, is_number, number_text, text_sheet
-from bench_hw.tables.columns import check_increasing, check_row_count, numbers_of
+from bench_hw.tables.columns import check_increasing, check_row_count, check_size, numbers_of
 from bench_hw.tables.measurement import MARKER_COLUMNS, TRIAL_COLUMNS
 from bench_hw.tables.output import write_columns
 from bench_hw.tables.units import ColumnMap, FloatArray, from_si, join_unit
@@ -165,8 +165,8 @@ def import_table(path: Path | str, layout: ForeignFormat, plan: ImportPlan) -> I
     Raises
     ------
     TableError
-        The file cannot be read or split, a column is missing, a cell is no finite number, time does not
-        increase, there are fewer than 20 rows.
+        The file cannot be read or split, a column is missing, a cell is no finite number or larger than any bench's,
+        time does not increase, there are fewer than 20 rows.
     InputError
         `negate` or `zero` name a column that is not taken, or a rate is given beside times.
     """
@@ -180,6 +180,7 @@ def import_table(path: Path | str, layout: ForeignFormat, plan: ImportPlan) -> I
     for item in maps:
         picked = [cells[item.target][row] for row in kept]
         values = numbers_of(rows.path, item.source, picked, lines, empty=False) * item.factor
+        check_size(rows.path, item.target, values, lines)
         columns[item.target] = _adjusted(values, item.target, plan)
     _check_names(plan, columns)
     _check_rows(rows.path, columns[_TIME], lines, is_marker)

@@ -145,7 +145,7 @@ def _streamed(path: Path, required: Sequence[str]) -> NumericColumns | None:
     values = {name: np.concatenate([piece[:, k] for piece in plain]) for k, name in enumerate(names) if name}
     for name, column in values.items():
         _check_finite(path, name, column, lines)
-        _check_size(path, name, column, lines)
+        check_size(path, name, column, lines)
     return NumericColumns(path, values, lines)
 
 
@@ -258,7 +258,7 @@ def read_columns(source: CsvText, required: Sequence[str], may_be_empty: Collect
         values = {name: matrix[:, index] for index, name in enumerate(source.names) if name}
         for name, column in values.items():
             _check_finite(source.path, name, column, lines)
-            _check_size(source.path, name, column, lines)
+            check_size(source.path, name, column, lines)
         return NumericColumns(source.path, values, lines)
     columns, line_list = text_columns(source)
     lines = np.array(line_list, dtype=np.int64)
@@ -269,7 +269,7 @@ def read_columns(source: CsvText, required: Sequence[str], may_be_empty: Collect
         strict = name in required or name in may_be_empty or split_unit(name)[1] != ""
         if strict or all(map(_NUMBER.fullmatch, cells)):
             values[name] = numbers_of(source.path, name, cells, lines, empty=name in may_be_empty)
-            _check_size(source.path, name, values[name], lines)
+            check_size(source.path, name, values[name], lines)
     return NumericColumns(source.path, values, lines)
 
 
@@ -311,8 +311,14 @@ def _check_finite(path: Path, name: str, column: FloatArray, lines: NDArray[np.i
         raise TableError(path, problem, "a finite number", row=row, column=name, value=value)
 
 
-def _check_size(path: Path, name: str, column: FloatArray, lines: NDArray[np.int64]) -> None:
-    """Refuse a time, length or force that no bench measures; NaN passes."""
+def check_size(path: Path, name: str, column: FloatArray, lines: NDArray[np.int64]) -> None:
+    """Refuse a time, length or force that no bench measures, by the unit of its column's name; NaN passes.
+
+    Raises
+    ------
+    TableError
+        Names the first row.
+    """
     factor, unit = UNITS.get(split_unit(name)[1], (None, ""))
     if factor is None or unit not in LARGEST:
         return

@@ -208,3 +208,16 @@ def test_several_files_are_imported_all_or_none(run, tmp_path):
     for out, reason in ((tmp_path / "one.csv", "one table for 2 files"), (tmp_path, "file to import itself")):
         ran = run("import", good, bad, "--out", out)
         assert (ran.exit_code, reason in ran.stderr) == (2, True)
+
+
+@pytest.mark.parametrize("options", [(), ("--map", "force_N=force_N:N")])
+def test_what_a_logger_writes_over_its_range_is_refused_with_its_row(run, tmp_path, options):
+    """It was imported, and the table refused later."""
+    path = tmp_path / "run.csv"
+    rows = [f"{n / 10},{n / 20},{'9.9e37' if n == 7 else n / 50}" for n in range(COUNT)]
+    path.write_text("\n".join(["time_s,depth_mm,force_N", *rows]) + "\n")
+    ran = run("import", path, "--out", tmp_path / "out.csv", *options)
+    said = " ".join(ran.stderr.split())
+    assert ran.exit_code == 2
+    assert "row 9, column 'force_N', value '9.9e+37'): the number is too large; allowed: numbers from -1e+09" in said
+    assert not (tmp_path / "out.csv").exists()
