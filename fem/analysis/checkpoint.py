@@ -126,4 +126,4 @@ def _state(values: Mapping[str, Any]) -> State:
 def run_fingerprint(problem: Problem, mesh: AnyMesh, load: Load) -> str:
     """Hash of everything that decides the steps of a run; of the problem's surface the mesh says enough."""
     words = tuple(getattr(problem, f.name) for f in fields(problem) if f.name != "surface")
-    return fingerprint((words, load.control), (mesh.nodes, mesh.elements, mesh.layer, load.time, load.value))
+    return fingerprint((words, load.control), (mesh.nodes, mesh.elements, mesh.layer, mesh.base, load.time, load.value))

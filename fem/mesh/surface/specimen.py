@@ -16,7 +16,8 @@ from fem.mesh.surface.surface_mesh import POOR, MeshQuality, SurfaceMesh, baryce
 
 EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))  # mid-side nodes 4 to 9
 FACES = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))  # looking outwards
-BASE_HEIGHT = 0.15  # of the body: what of its underside rests on the base
+BASE_HEIGHT = 0.15  # of the body: a face of its underside that lies whole in it rests on the base,
+BASE_ANGLE = 53.0  # degrees; if its outward normal points within them of straight down
 LOOKING_UP = 0.2  # least vertical part of the normal of a face that the tool touches
 WORST = 1e-3
 UNLIKE = "the mesher takes no seed on this system: each run has another mesh, and differs by what the mesh is worth"
@@ -66,7 +67,9 @@ def build_surface_mesh(
         remarks = (*remarks, f"mesh quality: {quality}")
     if not has_seed():
         remarks = (*remarks, UNLIKE)
-    return _pressed_mesh(*quadratic(points, tetrahedra), layer, place, radius, quality, remarks)
+    mesh = _pressed_mesh(*quadratic(points, tetrahedra), layer, place, radius, quality, remarks)
+    _require_base(surface, mesh)
+    return mesh
 
 
 def _pressed_mesh(
@@ -86,8 +89,7 @@ def _pressed_mesh(
     if not touched.any():
         raise FemError(f"tool.position = ({x:g}, {y:g}) m: no face of the mesh lies under the tool")
     load = _disc_load(nodes, faces[0], up, place, radius)
-    z = nodes[:, 2]
-    under = faces[0][:, (up < 0.0) & (z[faces[0][:3]].max(axis=0) <= z.min() + BASE_HEIGHT * np.ptp(z))]
+    under = faces[0][:, _resting(nodes, faces[0], up)]
     nobody = np.zeros(len(nodes), dtype=np.bool_)
     return SurfaceMesh(
         nodes,
@@ -125,6 +127,17 @@ def _require_quality(surface: Surface, quality: MeshQuality) -> None:
         raise FemError(f"{surface.label}: the mesh does not fill it, is it more than one body? {quality}")
     if quality.least <= WORST:
         raise FemError(f"{surface.label}: the mesh is unusable, a tetrahedron is flat; {quality}")
+
+
+def _require_base(surface: Surface, mesh: SurfaceMesh) -> None:
+    if not mesh.base.any():
+        low, height = float(mesh.nodes[:, 2].min()), float(np.ptp(mesh.nodes[:, 2]))
+        raise FemError(
+            f"{surface.label}: no face of the mesh rests on the base; at least one must lie whole in the lowest "
+            f"{100 * BASE_HEIGHT:g} % of the body (z from {low:.4g} to {low + BASE_HEIGHT * height:.4g} m), its "
+            f"outward normal within {BASE_ANGLE:g} degrees of straight down (-z): turn the body (z upwards), give it an "
+            "underside, or make the mesh finer"
+        )
 
 
 def _size_remark(surface: Surface, radius: float) -> tuple[str, ...]:
@@ -198,11 +211,26 @@ def _upward(nodes: FloatArray, faces: IntArray) -> FloatArray:
     return out
 
 
+def _resting(nodes: FloatArray, faces: IntArray, up: FloatArray) -> BoolArray:
+    """Faces (T,) that rest on the base: whole in the lowest part of the body, and looking down."""
+    z = nodes[:, 2]
+    top = z.min() + BASE_HEIGHT * np.ptp(z)
+    down = up < -np.cos(np.radians(BASE_ANGLE)) * _areas(nodes, faces)
+    out: BoolArray = down & (z[faces[:3]].max(axis=0) <= top)
+    return out
+
+
+def _areas(nodes: FloatArray, faces: IntArray) -> FloatArray:
+    """Areas (T,) in m2 of faces."""
+    a, b, c = nodes[faces[:3]]
+    out: FloatArray = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    return out
+
+
 def _facing(nodes: FloatArray, faces: IntArray, up: FloatArray, place: FloatArray, radius: float) -> BoolArray:
     """Faces (T,) that look up and lie not far below the tool's middle."""
-    corners = nodes[faces[:3]]
-    area = 0.5 * np.linalg.norm(np.cross(corners[1] - corners[0], corners[2] - corners[0]), axis=1)
-    out: BoolArray = (up > LOOKING_UP * area) & (corners[..., 2].mean(axis=0) > place[2] - 2.0 * radius)
+    middle = nodes[faces[:3], 2].mean(axis=0)
+    out: BoolArray = (up > LOOKING_UP * _areas(nodes, faces)) & (middle > place[2] - 2.0 * radius)
     return out
 
 

@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyvista
+import skfem
 
 import fem
 from fem.errors import FemError
 from fem.mesh.surface import filling as kept_filling
-from fem.mesh.surface import own_process
+from fem.mesh.surface import own_process, specimen
 from fem.mesh.surface.filling import Refinement, fill
 from fem.mesh.surface.own_process import tetrahedralize_apart
 from fem.mesh.surface.specimen import build_surface_mesh
@@ -93,6 +94,47 @@ def test_what_does_not_fit_is_refused(ball, words, change):
 def test_layers_thicker_than_the_body_are_refused(ball):
     with pytest.raises(fem.FemError, match=r"no place in the body is deeper than 0.02 m: is the unit right"):
         build_surface_mesh(ball, (0.03, 1.0), (0.0, 0.0, 6e-3), 0.7)
+
+
+def pillar(places):
+    """Points (n, 3) of a box of 20 x 20 x 60 mm that widens by 2 % upwards, from places in the unit cube."""
+    x, y, z = places.T
+    return np.stack((0.02 * (x - 0.5) * (1 + 0.02 * z), 0.02 * (y - 0.5) * (1 + 0.02 * z), 0.06 * z), axis=1)
+
+
+def pressed_pillar(monkeypatch, shape, radius):
+    """Mesh and stiffness in N/m of a body of 20 kPa and Poisson's ratio 0 on structured tetrahedra."""
+    box = pyvista.Box((0, 1, 0, 1, 0, 1)).triangulate().subdivide(2, "linear").clean()
+    surface = Surface(shape(np.asarray(box.points, dtype=np.float64)), box.regular_faces.astype(np.int64))
+    line = np.linspace(0.0, 1.0, 5)
+    cube = skfem.MeshTet.init_tensor(line, line, np.linspace(0.0, 1.0, 21))
+    points, cells = shape(cube.p.T), cube.t.T.copy()
+    turned = np.linalg.det(points[cells[:, 1:]] - points[cells[:, :1]]) < 0.0
+    cells[turned] = cells[turned][:, [0, 2, 1, 3]]
+    filled = points, cells, np.zeros(len(cells), dtype=np.int64)
+    monkeypatch.setattr(specimen, "kept_filling", lambda *_: filled)
+    layer = fem.Layer("pillar", 0.06, 1000.0, fem.NeoHookean(2e4, 0.0))
+    tool = fem.Tool(radius, "uniform_pressure")
+    model = fem.prepare(
+        fem.Problem((layer,), tool, fem.Support("bonded"), "linear", geometry="surface", surface=surface)
+    )
+    return model.mesh, 0.1 / model.run(fem.Load("force", np.array([1.0]), np.array([0.1]))).depth[0]
+
+
+def test_a_pillar_is_bonded_at_its_base_only(monkeypatch):
+    """Its walls look a little down. Judge: E A / h, in which A of a body that widens is the product of both widths."""
+    mesh, stiffness = pressed_pillar(monkeypatch, pillar, 0.0148)
+    np.testing.assert_array_equal(mesh.base, mesh.nodes[:, 2] == 0.0)
+    assert stiffness == pytest.approx(2e4 * 0.02 * 0.0204 / 0.06, rel=2e-3)
+
+
+def test_a_body_that_rests_on_no_face_is_refused(monkeypatch):
+    def leaning(places):
+        x, y, z = pillar(places).T
+        return np.stack((x, y, z + 2.0 * np.abs(x)), axis=1)
+
+    with pytest.raises(FemError, match=r"no face .* rests on the base; .* lowest 15 % .* within 53 degrees"):
+        pressed_pillar(monkeypatch, leaning, 0.0148)
 
 
 @pytest.mark.slow
