@@ -135,8 +135,8 @@ def _require_base(surface: Surface, mesh: SurfaceMesh) -> None:
         raise FemError(
             f"{surface.label}: no face of the mesh rests on the base; at least one must lie whole in the lowest "
             f"{100 * BASE_HEIGHT:g} % of the body (z from {low:.4g} to {low + BASE_HEIGHT * height:.4g} m), its "
-            f"outward normal within {BASE_ANGLE:g} degrees of straight down (-z): turn the body (z upwards), give it an "
-            "underside, or make the mesh finer"
+            f"outward normal within {BASE_ANGLE:g} degrees of straight down (-z): turn the body (z upwards), give it "
+            "an underside, or make the mesh finer"
         )
 
 

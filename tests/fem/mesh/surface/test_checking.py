@@ -2,6 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import pyvista
 
 from fem import FemError
 from fem.mesh.surface.checking import check_surface
@@ -84,3 +85,61 @@ def test_no_triangles_and_no_numbers_are_refused(ball):
     points[3, 1] = np.nan
     with pytest.raises(FemError, match="point 3 has a coordinate that is not finite"):
         check_surface(replace(ball, points=points))
+
+
+def box(shift=(0.0, 0.0, 0.0)):
+    """A cube of 10 mm, its walls triangulated unevenly, turned about two axes."""
+    cube = pyvista.Box((0.0, 1.0, 0.0, 1.0, 0.0, 1.0)).triangulate().subdivide(2, "linear").clean()
+    points = np.asarray(cube.points, dtype=np.float64)
+    inside = (points > 0.0) & (points < 1.0)
+    points += 0.06 * inside * np.random.default_rng(3).uniform(-1.0, 1.0, points.shape) + np.asarray(shift)
+    c, s = np.cos(0.1), np.sin(0.1)
+    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]) @ np.array(
+        [[c, 0.0, -s], [0.0, 1.0, 0.0], [s, 0.0, c]]
+    )
+    return Surface(0.01 * points @ turn.T, cube.regular_faces.astype(np.int64))
+
+
+def joined(one, other):
+    triangles = np.concatenate((one.triangles, other.triangles + len(one.points)))
+    return Surface(np.concatenate((one.points, other.points)), triangles)
+
+
+@pytest.mark.parametrize("moved", [0.0, 1.0])
+@pytest.mark.parametrize("kind", [np.float32, np.float64])
+def test_flat_walls_of_many_triangles_do_not_cross(kind, moved):
+    flat = box()
+    points = (flat.points + moved).astype(kind).astype(np.float64)
+    assert check_surface(replace(flat, points=points)).remarks == ()
+
+
+def test_a_wall_folded_flat_says_where():
+    """A point of a wall is moved within it, over its neighbours."""
+    cube = pyvista.Box((0.0, 0.01, 0.0, 0.01, 0.0, 0.01)).triangulate().subdivide(2, "linear").clean()
+    points = np.asarray(cube.points, dtype=np.float64)
+    moved = np.linalg.norm(points - [0.005, 0.005, 0.0], axis=1).argmin()
+    points[moved, :2] += 0.004
+    with pytest.raises(FemError, match=r"touches itself or is folded flat near \(0\.00"):
+        check_surface(Surface(points, cube.regular_faces.astype(np.int64)))
+
+
+def test_faces_that_touch_say_where_and_what_is_allowed():
+    with pytest.raises(
+        FemError, match=r"touches itself or is folded flat near \(.* m; allowed are faces further apart"
+    ):
+        check_surface(joined(box(), box((1.0, 0.2, 0.1))))
+
+
+def test_a_second_shell_is_refused_with_volumes_and_places(ball):
+    small = Surface(0.3 * ball.points + [0.04, 0.0, 0.0], ball.triangles)
+    words = r"has 2 shells: 32.38 cm3 round \(.*\) m, 0.8742 cm3 round \(0.04, .*allowed is one closed shell"
+    with pytest.raises(FemError, match=words):
+        check_surface(joined(ball, small))
+
+
+def test_a_shell_within_must_look_into_a_hollow(ball):
+    hollow = Surface(0.3 * ball.points, ball.triangles[:, ::-1])
+    assert check_surface(joined(ball, hollow)).volume == pytest.approx((1.0 - 0.3**3) * ball.volume)
+    for other in (replace(hollow, triangles=ball.triangles), replace(hollow, points=hollow.points + 0.05)):
+        with pytest.raises(FemError, match="has 2 shells"):
+            check_surface(joined(ball, other))
