@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from benchmark.cli.options import Debug, Json, Out, Quiet, Seed, Set, parse_settings
+from benchmark.cli.options import Debug, Json, Out, Quiet, Seed, Set, parse_settings, say_names
 
 if TYPE_CHECKING:
     from benchmark.discovery.report.discovery_record import NextExperiment
@@ -79,6 +79,7 @@ def discover(
     from benchmark.discovery.discovery_request import DiscoverRequest, carry_out
 
     console = Console(quiet=quiet)
+    say_names(console, tissues=(specimen,), sessions=paths)
     _check_together(paths, bench, budget, refit)
     _check_picked(refit, effects)
     most = BUDGET if budget is None else budget

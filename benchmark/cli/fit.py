@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from benchmark.cli.options import Debug, Json, Out, Quiet, Seed, Set, parse_settings
+from benchmark.cli.options import Debug, Json, Out, Quiet, Seed, Set, parse_settings, say_names
 
 Sessions = Annotated[
     list[Path], typer.Argument(help="A trial session, a folder or a shipped name; several with --free.")
@@ -78,6 +78,7 @@ def fit(
     from benchmark.runs.parameters_run import ParameterWish
 
     console = Console(quiet=quiet)
+    say_names(console, tissues=(specimen,), sessions=sessions)
     files = tuple(sessions[1:]), fit_file
     wish = ParameterWish(_keys(free), _keys(exact), _laws(law), forward, *files, discrepancy, markers, posterior, seed)
     request = FitRequest(

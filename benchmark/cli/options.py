@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    from benchmark.cli.console import Console
 
 Out = Annotated[Path | None, typer.Option("--out", help="Folder of the result; by default results/NAME-DATE-TIME.")]
 Json = Annotated[
@@ -20,6 +23,22 @@ Set = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help='Change one value, as in --set dermis.youngs_modulus="120 kPa".'),
 ]
+
+
+def say_names(
+    console: Console,
+    *,
+    tissues: Iterable[str | None] = (),
+    scenario: str | None = None,
+    sessions: Iterable[Path | None] = (),
+) -> None:
+    """Say which one is taken where something that ships and a file here have the same name."""
+    from benchmark.files.shipped import said_of_name
+
+    asked = [("scenario", scenario), *(("tissue", each) for each in tissues), *(("session", each) for each in sessions)]
+    for what, name in asked:
+        if name is not None and (said := said_of_name(name, what)):
+            console.say(said)
 
 
 def parse_settings(settings: Sequence[str] | None) -> dict[str, str]:

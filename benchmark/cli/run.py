@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from benchmark.cli.options import Debug, Json, Out, Quiet, Seed, Set, parse_settings
+from benchmark.cli.options import Debug, Json, Out, Quiet, Seed, Set, parse_settings, say_names
 
 Scenario = Annotated[str | None, typer.Argument(help="A shipped scenario's name or a TOML file.")]
 Trials = Annotated[
@@ -80,6 +80,7 @@ def run(
     if missing is not None:
         raise InputError(f"--fields all: {missing}")
     console = Console(quiet=quiet)
+    say_names(console, scenario=scenario, tissues=(*(tissue or ()), specimen), sessions=(trials,))
     request = RunRequest(
         scenario, trials, specimen, parse_settings(settings), out, wave, reference, tuple(tissue or ()), model, effects
     )

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from benchmark.cli.options import Debug, Json, Out, Quiet, Seed, Set, parse_settings
+from benchmark.cli.options import Debug, Json, Out, Quiet, Seed, Set, parse_settings, say_names
 
 Scenario = Annotated[str, typer.Argument(help="A shipped scenario's name or a TOML file.")]
 Vary = Annotated[
@@ -61,6 +61,7 @@ def sweep(
     from benchmark.sweeps.sweep_run import SweepRequest, run_sweep
 
     console = Console(quiet=quiet)
+    say_names(console, scenario=scenario, tissues=(tissue,))
     request = SweepRequest(
         scenario=scenario,
         vary=tuple(vary),

@@ -52,13 +52,25 @@ def session_folder(path: Path) -> Path:
     return path
 
 
+def said_of_name(name: str | Path, what: str) -> str:
+    """One line where a shipped "tissue", "scenario" or "session" and a file here may both be meant; empty otherwise."""
+    shipped = shipped_sessions() if what == "session" else _entries(f"{what}s")
+    if str(name) not in shipped:
+        return ""
+    if is_file(Path(name)) or (what == "session" and Path(name).exists()):
+        return f"{what} {name}: the one in this folder is taken, not the one of that name that ships"
+    if is_file(Path(f"{name}.toml")):
+        return f"{what} {name}: the one that ships is taken; the file here is {name}.toml"
+    return ""
+
+
 def find(name_or_path: str | Path, what: str, base: Path | None = None) -> Path:
     """The file that a name or a path means.
 
     Parameters
     ----------
     name_or_path : str or Path
-        A shipped name, or a path: anything that ends in .toml or has a separator in it.
+        A shipped name, or a path: anything that ends in .toml or has a separator in it, or that a file is called.
     what : str
         "tissue" or "scenario".
     base : Path, optional
@@ -79,10 +91,10 @@ def find(name_or_path: str | Path, what: str, base: Path | None = None) -> Path:
     if isinstance(name_or_path, Path) or text.endswith(".toml") or "/" in text or "\\" in text:
         return path
     entries = _entries(f"{what}s")
-    if text in entries:
-        return entries[text].path
     if text and is_file(path):
         return path
+    if text in entries:
+        return entries[text].path
     if text and is_file(Path(f"{path}.toml")):
         raise InputError(f"no {what} {text!r} ships with tissuebench; did you mean the file {text}.toml?")
     if what == "scenario" and text in shipped_tissues():

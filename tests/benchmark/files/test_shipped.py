@@ -12,7 +12,7 @@ import pytest
 from bench_hw.capture.session_keys import TISSUES
 from benchmark.errors import InputError
 from benchmark.files import load_scenario, load_tissue, scenario_notes
-from benchmark.files.shipped import find, shipped_scenarios, shipped_tissues
+from benchmark.files.shipped import find, said_of_name, shipped_scenarios, shipped_tissues
 
 
 def test_what_ships():
@@ -32,6 +32,20 @@ def test_a_path_is_taken_as_one(text, tmp_path):
 
 def test_a_path_object_is_a_path_whatever_its_name():
     assert find(Path("skin_forearm"), "tissue") == Path("skin_forearm")
+
+
+def test_what_the_folder_holds_under_a_shipped_name_is_taken_and_said(tmp_path, monkeypatch):
+    """A session here won over the shipped one, a tissue here lost against it; neither was said."""
+    monkeypatch.chdir(tmp_path)
+    assert [said_of_name(*each) for each in (("skin_forearm", "tissue"), (Path("phantom"), "session"))] == ["", ""]
+    Path("skin_forearm.toml").write_text("")
+    assert "ships is taken; the file here is skin_forearm.toml" in said_of_name("skin_forearm", "tissue")
+    assert find("skin_forearm", "tissue") == shipped_tissues()["skin_forearm"].path
+    Path("skin_forearm").write_text("")
+    Path("phantom").mkdir()
+    assert find("skin_forearm", "tissue") == Path("skin_forearm")
+    for name, what in (("skin_forearm", "tissue"), (Path("phantom"), "session")):
+        assert f"{what} {name}: the one in this folder is taken" in said_of_name(name, what)
 
 
 def test_a_plain_name_may_be_a_file(tmp_path):
