@@ -288,12 +288,17 @@ def _conditions(trials: Sequence[TrialFit]) -> str:
 
 def _time(trials: Sequence[TrialFit]) -> str:
     decays = [t.hold.decay_percent for t in trials if t.hold is not None and t.hold.seen]
-    if not decays:
+    creeps = [t.creep_percent for t in trials if t.creep_percent]
+    seen = [
+        f"in {len(percent)} of {len(trials)} trials {what} by up to {max(percent):.3g} % while the {held} is held"
+        for percent, what, held in ((decays, "the force falls", "depth"), (creeps, "the depth grows", "force"))
+        if percent
+    ]
+    if not seen:
         return ""
     return (
-        f"time dependence is in the data: in {len(decays)} of {len(trials)} trials the force falls by up "
-        f"to {max(decays):.3g} % while the depth is held, which an elastic law cannot "
-        "follow; the stiffness is that of the whole record"
+        f"time dependence is in the data: {', '.join(seen)}, which an elastic law cannot follow; the stiffness is that "
+        "of the whole record"
     )
 
 

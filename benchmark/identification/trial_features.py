@@ -249,17 +249,52 @@ def largest_decay(trial: TrialData) -> Hold | None:
     """Return the loaded hold in which the force falls most, None where the depth is never held under load."""
     level = float(np.median(trial.force[trial.depth <= np.quantile(trial.depth, 0.05)]))
     rise = float(without_spikes(trial.force).max()) - level
-    holds = [_hold(trial, rows, level) for rows in _still(trial) if _loaded(trial.force[rows], level, rise)]
+    still = _still(trial, trial.depth, STILL * travel(trial.depth))
+    holds = [_hold(trial, rows, level) for rows in still if _loaded(trial.force[rows], level, rise)]
     return max(holds, key=lambda hold: hold.decay_percent, default=None)
 
 
-def _still(trial: TrialData) -> Iterator[slice]:
-    """Rows of each stretch in which the depth stays put, in order."""
-    tolerance = STILL * travel(trial.depth)
+STEADY = 0.04
+"""Force within this fraction of the rise counts as held: several standard deviations of a usual sensor's noise."""
+STEADIER = 3.0
+"""Under a held force the depth grows by this many times more, relatively, than the force: in an elastic press, whose
+force grows with the depth at least in proportion, it never does."""
+SLOWING = 0.7
+"""In the second half of a creep the depth grows by less than this fraction of what it does in the first: a saturated
+sensor shows a force that is held, too, while the tool goes on as before."""
+
+
+def largest_creep(trial: TrialData) -> float:
+    """By how much of itself, in %, the depth grows while a force is held, slowing down; 0 where it does not."""
+    force, depth = without_spikes(trial.force), trial.depth
+    level = float(np.median(force[depth <= np.quantile(depth, 0.05)]))
+    rise = float(force.max()) - level
+    still = _still(trial, force, STEADY * rise) if rise > 0.0 else ()
+    return max(
+        (_growth(force[rows] - level, depth[rows]) for rows in still if _loaded(force[rows], level, rise)), default=0.0
+    )
+
+
+def _growth(force: Array, depth: Array) -> float:
+    """From where a force (n,) N is first as large as it is held, of the depth (n,) m there, in %."""
+    first = int(np.argmax(force >= np.median(force)))
+    force, depth = force[first:], depth[first:]
+    few = max(1, len(depth) // 10)
+    begun, ended, middle = depth[0], float(depth[-few:].mean()), depth[len(depth) // 2]
+    if len(depth) < 5 or begun <= 0.0 or ended - middle >= SLOWING * (middle - begun):
+        return 0.0
+    grown = 100.0 * (ended - begun) / begun
+    pushed = 100.0 * abs(float(force[-few:].mean()) / float(force[:few].mean()) - 1.0)
+    noise = NOISES * sample_noise(depth) / begun
+    return float(grown) if grown > max(SEEN, STEADIER * pushed, 100.0 * noise) else 0.0
+
+
+def _still(trial: TrialData, values: Array, tolerance: float) -> Iterator[slice]:
+    """Rows of each stretch in which values (n,) stay put, in order."""
     shortest = LEAST_SHARE * float(trial.time[-1] - trial.time[0])
     first = 0
     while first < trial.rows - 4:
-        moved = np.abs(trial.depth[first:] - trial.depth[first]) > tolerance
+        moved = np.abs(values[first:] - values[first]) > tolerance
         end = first + int(np.argmax(moved)) if moved.any() else trial.rows
         if end - first >= 5 and trial.time[end - 1] - trial.time[first] >= shortest:
             yield slice(first, end)

@@ -27,6 +27,7 @@ from benchmark.identification.trial_features import (
     Start,
     contact_range,
     find_start,
+    largest_creep,
     largest_decay,
     travel,
     without_spikes,
@@ -71,6 +72,8 @@ class TrialFit:
         m); within the standard errors.
     row_noise : float
         Standard deviation of a fitted row, widened for autocorrelation, N; by it and that error rows were weighted.
+    creep_percent : float
+        By how much the depth grows while a force is held, slowing down, in % of the depth; 0 where it does not.
     """
 
     name: str
@@ -96,6 +99,7 @@ class TrialFit:
     notes: tuple[str, ...]
     of_curve: tuple[float, float, float] = (0.0, 0.0, 0.0)
     row_noise: float = 0.0
+    creep_percent: float = 0.0
 
     @property
     def key(self) -> tuple[str, str]:
@@ -148,6 +152,7 @@ class TrialFit:
             "effective_rows": self.effective_rows,
             "hold_decay_percent": None if self.hold is None else self.hold.decay_percent,
             "hold": None if self.hold is None else self.hold.to_dict(),
+            "creep_percent": self.creep_percent,
             "correlations": dict(self.correlations),
             "notes": list(self.notes),
         }
@@ -262,6 +267,7 @@ def _result(
         notes=tuple(notes),
         row_noise=whole.row_noise,
         of_curve=(max(whole.of_curve[0], contact.of_curve[0]), *contact.of_curve[1:]),
+        creep_percent=largest_creep(reduced(trial, MOST_ROWS)),
     )
     if found.onset_at_bound:
         return replace(found, notes=(*notes, "the contact onset is at an end of the range the data allow"))

@@ -11,6 +11,7 @@ from benchmark.identification.trial_features import (
     evidence_of,
     evidence_of_rise,
     find_start,
+    largest_creep,
     largest_decay,
     sample_noise,
 )
@@ -122,6 +123,32 @@ def test_decay_of_a_fading_force(fading_trial, g, tau):
 def test_noise_in_a_hold_is_seldom_a_decay(trial, rho):
     seen = [largest_decay(trial(noise=0.01, rho=rho, seed=seed)).seen for seed in range(100)]
     assert np.mean(seen) <= 0.05
+
+
+def pressed_by_force(trial, depth, *, noise=0.0, seed=0):
+    """A ramp in force of 2 s and a hold of 14 s, 16 s at 10 Hz; `depth` in m of the time in s since the ramp began."""
+    made = trial()
+    force = 2.0 * np.minimum(made.time / 2.0, 1.0)
+    noisy = force + noise * np.random.default_rng(seed).normal(size=force.size)
+    return TrialData("a", "b", made.time, depth(made.time), noisy, made.curve)
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.01])
+def test_a_depth_that_grows_under_a_held_force_is_a_creep(trial, noise):
+    """5 mm at the end of the ramp, and 1.5 mm more with a time of 3 s: 30 %."""
+    creep = pressed_by_force(
+        trial, lambda t: np.where(t < 2.0, 2.5e-3 * t, 6.5e-3 - 1.5e-3 * np.exp(-(t - 2.0) / 3.0)), noise=noise
+    )
+    assert largest_creep(creep) == pytest.approx(29.0, abs=3.0)
+
+
+def test_neither_a_steady_depth_nor_a_saturated_sensor_nor_a_slow_press_is_a_creep(trial):
+    assert largest_creep(pressed_by_force(trial, lambda t: 2.5e-3 * np.minimum(t, 2.0), noise=0.02)) == 0.0
+    assert largest_creep(pressed_by_force(trial, lambda t: 2.5e-3 * t)) == 0.0
+    made = trial()
+    depth = 5e-3 * np.sqrt(np.linspace(0.0, 1.0, made.rows))  # ever slower, and the force with it
+    for power in (1.0, 1.5, 2.0):
+        assert largest_creep(TrialData("a", "b", made.time, depth, 3e3 * depth**power, made.curve)) == 0.0
 
 
 def test_a_triangle_has_no_hold(trial):
