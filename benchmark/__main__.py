@@ -1,7 +1,9 @@
 """`python -m benchmark`, and the command `tissuebench`."""
 
 import os
+import signal
 import sys
+from types import FrameType
 
 
 def start() -> int:
@@ -29,6 +31,8 @@ def _start() -> int:
 
     sys.path.remove(root)
     keep_interruptions()
+    if signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:
+        signal.signal(signal.SIGTERM, _terminated)
     open_streams()
     speak_utf8()
     tell(leave_current_folder(root), sys.argv)
@@ -37,6 +41,18 @@ def _start() -> int:
     except ModuleNotFoundError as error:
         return not_installed(error)
     return end(main())
+
+
+def _terminated(_: int, __: FrameType | None) -> None:
+    """End as by Ctrl-C where SIGTERM comes, the processes at work first; a second one ends the program at once.
+
+    Ended on the spot, a pool's semaphores stay behind, and Python warns of a leak.
+    """
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    if "multiprocessing" in sys.modules:
+        for child in sys.modules["multiprocessing"].active_children():
+            child.terminate()
+    raise KeyboardInterrupt
 
 
 if __name__ == "__main__":

@@ -136,3 +136,23 @@ def test_a_child_is_deaf_to_an_interruption_and_its_parent_is_not() -> None:
     assert answers.get()
     with pytest.raises(KeyboardInterrupt):
         os.kill(os.getpid(), signal.SIGINT)
+
+
+POOL_AT_WORK = """
+import os, signal, time
+from benchmark.__main__ import _terminated
+from benchmark.child_processes import mapping
+signal.signal(signal.SIGTERM, _terminated)
+try:
+    with mapping(2) as mapped:
+        mapped(time.sleep, [600.0] * 4)
+        os.kill(os.getpid(), signal.SIGTERM)
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+
+
+def test_sigterm_ends_a_pool_at_work_without_a_warning_of_leaks() -> None:
+    """Python warned of leaked semaphore objects between our words."""
+    ran = subprocess.run([sys.executable, "-c", POOL_AT_WORK], capture_output=True, text=True, timeout=120)
+    assert (ran.returncode, ran.stdout, ran.stderr) == (0, "interrupted\n", "")
