@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from benchmark.blind import blind_folder
 from benchmark.blind.running import load_discoverer
 from benchmark.blind.suites import chosen, suite
 from benchmark.cli.app import main
@@ -181,3 +182,14 @@ def test_the_first_cases_of_a_mixed_suite(stub: Path, tmp_path: Path, capsys: py
     assert len(written) == 3
     assert written[0].endswith("family,lab,conditions,markers,trials,setup_off,experiments,set_before,unexplained")
     assert [name.text for name in suite("labs", 6)[:2]] == [line.partition(",")[0] for line in written[1:]]
+
+
+def test_a_stopped_run_goes_on_by_the_code_that_began_it_alone(tmp_path, monkeypatch) -> None:
+    settings = {"suite": "small", "seed": 0}
+    journal = blind_folder.open_folder(tmp_path / "b", settings)
+    assert blind_folder.open_folder(tmp_path / "b", settings) == journal
+    monkeypatch.setattr(blind_folder, "code_version", lambda: "another")
+    with pytest.raises(InputError, match="a stopped blind run with other code of the program"):
+        blind_folder.open_folder(tmp_path / "b", settings)
+    with pytest.raises(InputError, match="a stopped blind run with other settings"):
+        blind_folder.open_folder(tmp_path / "b", {**settings, "seed": 1})
