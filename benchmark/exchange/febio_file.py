@@ -10,14 +10,17 @@ Written after FEBio's documentation and source; nobody has run such a file yet.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import pairwise
+from types import MappingProxyType
 from xml.sax.saxutils import escape
 
 import numpy as np
 
 import fem
 from benchmark.exchange.exported_press import ExportedPress, Laws, Nodes, law_text, refuse_linear
+from fem.materials.material import LARGEST_POISSON_RATIO
+from fem.materials.neo_hookean import CoupledNeoHookean
 
 SECTORS = 18
 """Bricks round a quarter: the chords lose 0.13 % of the circle's area, which the loads make up for."""
@@ -294,3 +297,42 @@ def _output(press: ExportedPress, swept: _Swept) -> Iterator[str]:
         number = len(press.problem.layers) + 1
         yield f'<rigid_body_data name="TOOL_QUARTER: z;Fz" data="z;Fz" delim=",">{number}</rigid_body_data>'
     yield "</logfile></Output>"
+
+
+def _as_mooney_rivlin(values: Mapping[str, float]) -> fem.Material:
+    c1, c2, k = values["c1"], values["c2"], values["k"]
+    return fem.MooneyRivlin(c1, c2, _ratio(2.0 * (c1 + c2), k, "2 (c1 + c2)"))
+
+
+def _as_ogden(values: Mapping[str, float]) -> fem.Material:
+    """FEBio's c / m^2 is our mu / alpha: mu = c / m."""
+    pairs = [(values.get(f"c{n}", 0.0), values.get(f"m{n}", 1.0)) for n in range(1, MOST_TERMS + 1)]
+    for n, (c, m) in enumerate(pairs, start=1):
+        if c != 0.0 and m == 0.0:
+            raise fem.FemError(f"m{n} = 0 with c{n} = {c:g}: must not be zero (c / m^2 is the term's factor)")
+    ratio = _ratio(0.5 * sum(c for c, _ in pairs), values["k"], "half the sum of c1, c2, ...")
+    return fem.Ogden(tuple((c / m, m) for c, m in pairs if c != 0.0), ratio)
+
+
+def _ratio(shear: float, bulk: float, what: str) -> float:
+    """Poisson's ratio at rest of a shear modulus, named by its constants, and the bulk modulus k."""
+    if not shear > 0.0:
+        raise fem.FemError(f"{what} = {shear:g}: the shear modulus at rest must be above 0")
+    ratio = (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear)) if bulk > 0.0 else -1.0
+    if not -1.0 < ratio <= LARGEST_POISSON_RATIO:
+        most = 2.0 * shear * (1.0 + LARGEST_POISSON_RATIO) / (3.0 * (1.0 - 2.0 * LARGEST_POISSON_RATIO))
+        raise fem.FemError(
+            f"k = {bulk:g}: the bulk modulus must be above 0 and at most {most:g} (Poisson's ratio "
+            f"{LARGEST_POISSON_RATIO}) with a shear modulus at rest of {shear:g}"
+        )
+    return ratio
+
+
+READ_LAWS: Mapping[str, tuple[Callable[[Mapping[str, float]], fem.Material], str]] = MappingProxyType(
+    {
+        "neo-Hookean": (lambda values: CoupledNeoHookean(values["E"], values["v"]), "E v"),
+        "Mooney-Rivlin": (_as_mooney_rivlin, "c1 c2 k"),
+        "Ogden": (_as_ogden, " ".join(["k", *(f"{letter}{n}" for letter in "cm" for n in range(1, MOST_TERMS + 1))])),
+    }
+)
+"""FEBio's laws that are read, and their constants, by their names."""

@@ -11,7 +11,7 @@ not act. Units are the file's own. Written after FEBio's documentation, and its 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -22,13 +22,12 @@ import numpy as np
 
 from benchmark.errors import InputError
 from benchmark.exchange.febio_contact import ContactReader, rigid_materials
-from fem import FemError, Material, MooneyRivlin, Ogden
+from benchmark.exchange.febio_file import READ_LAWS
+from fem import FemError, Material
 from fem.assembly.solid import SOLID_ELEMENTS
-from fem.materials.neo_hookean import CoupledNeoHookean
 from fem.verification.constrained_body import ConstrainedBody, Constraint
 
 AXES = "xyz"
-OGDEN_TERMS = 6
 OPTIONS = (
     "analysis time_steps step_size title solver time_stepper optimize_bw plot_level plot_range plot_stride "
     "plot_zero_state output_level output_stride print_level adaptor_re_solve"
@@ -155,12 +154,15 @@ class _Reader:
         force = np.zeros((3, len(nodes)))
         for load in self._each("Loads", "*"):
             self._force(load, place, force)
+        ties = tuple(self._constraints(place))
+        alone = np.setdiff1d(np.arange(len(nodes)), [*elements.flat, *(node for tie in ties for node in tie.nodes)])
+        held[:, alone] = True  # as FEBio has it, nothing acts on a node of no element
         kinds = {name for name, _ in laws}
         if kinds & COUPLED and kinds - COUPLED:
             raise self.refuse("coupled and uncoupled materials in one body are not read")
         body = ConstrainedBody(
             nodes, elements, kind, part, tuple(law for _, law in laws), held, moved, force,
-            tuple(self._constraints(place)), logarithmic=not kinds & COUPLED,
+            ties, logarithmic=not kinds & COUPLED,
         )  # fmt: skip
         body = replace(body, contacts=ContactReader(self, place, rigid, points).contacts(body))
         return FebioCase(self.path.stem, body, self._steps(), tuple(sorted(kinds)))
@@ -290,11 +292,11 @@ class _Reader:
 
     def _law(self, name: str) -> tuple[str, Material]:
         found = [one for one in self.root.findall("Material/material") if one.get("name") == name]
-        if not found or found[0].get("type") not in LAWS:
+        if not found or found[0].get("type") not in READ_LAWS:
             kind = found[0].get("type") if found else "none"
-            raise self.refuse(f"material {name}: {kind} is not read; read are {', '.join(sorted(LAWS))}")
+            raise self.refuse(f"material {name}: {kind} is not read; read are {', '.join(sorted(READ_LAWS))}")
         kind = str(found[0].get("type"))
-        law, constants = LAWS[kind]
+        law, constants = READ_LAWS[kind]
         self.only(found[0], f"{constants} density pressure_model", f"material {name}")
         told = {one.tag: one.text for one in found[0]}
         model = (told.pop("pressure_model", None) or DEFAULT_MODEL[0]).strip()
@@ -422,29 +424,3 @@ class _Reader:
         axis = self._axes(one.findtext("dof"), what)[0]
         node = self._place(self.number(one.findtext("node"), what), place, what)
         return axis, node, self.number(one.findtext("value") or "1", what)
-
-
-def _mooney_rivlin(values: Mapping[str, float]) -> Material:
-    return MooneyRivlin(values["c1"], values["c2"], _ratio(2.0 * (values["c1"] + values["c2"]), values["k"]))
-
-
-def _ogden(values: Mapping[str, float]) -> Material:
-    """FEBio's c / m^2 is our mu / alpha: mu = c / m."""
-    pairs = [(values.get(f"c{n}", 0.0), values.get(f"m{n}", 1.0)) for n in range(1, OGDEN_TERMS + 1)]
-    terms = tuple((c / m, m) for c, m in pairs if c != 0.0 and m != 0.0)
-    return Ogden(terms, _ratio(0.5 * sum(c for c, _ in pairs), values["k"]))
-
-
-def _ratio(shear: float, bulk: float) -> float:
-    """Poisson's ratio at rest."""
-    return (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear))
-
-
-LAWS: Mapping[str, tuple[Callable[[Mapping[str, float]], Material], str]] = MappingProxyType(
-    {
-        "neo-Hookean": (lambda values: CoupledNeoHookean(values["E"], values["v"]), "E v"),
-        "Mooney-Rivlin": (_mooney_rivlin, "c1 c2 k"),
-        "Ogden": (_ogden, " ".join(["k", *(f"{letter}{n}" for letter in "cm" for n in range(1, OGDEN_TERMS + 1))])),
-    }
-)
-"""FEBio's laws and their constants by their names."""

@@ -47,6 +47,11 @@ class Constraint:
     node: int
     terms: tuple[tuple[int, int, float], ...]
 
+    @property
+    def nodes(self) -> tuple[int, ...]:
+        """Every node in it."""
+        return self.node, *(node for _, node, _ in self.terms)
+
 
 @dataclass(frozen=True)
 class ContactForces:

@@ -232,3 +232,35 @@ def test_a_load_that_is_too_much_for_one_step_is_halved(tmp_path):
 def test_a_body_that_is_pressed_flat_is_said(tmp_path):
     with pytest.raises(ArithmeticError, match="no equilibrium is found"):
         read(tmp_path, text(boundary=SLIDING + PRESCRIBED.replace("-0.4", "-1.5"))).solved()
+
+
+@pytest.mark.parametrize(
+    ("kind", "constants", "words"),
+    [
+        ("Ogden", "<c1>6</c1><m1>0</m1><k>30</k>", "m1 = 0 with c1 = 6: must not be zero"),
+        ("Ogden", "<c1>6</c1><m1>3</m1><c2>2</c2><m2>0</m2><k>30</k>", "m2 = 0 with c2 = 2: must not be zero"),
+        ("Ogden", "<c1>6</c1><m1>3</m1><c2>-6</c2><m2>3</m2><k>30</k>", "half the sum of c1, c2, ... = 0: .* above 0"),
+        ("Mooney-Rivlin", "<c1>-2</c1><c2>1</c2><k>2</k>", r"2 \(c1 \+ c2\) = -2: .* must be above 0"),
+        ("Mooney-Rivlin", "<c1>0</c1><c2>0</c2><k>0</k>", r"2 \(c1 \+ c2\) = 0: .* must be above 0"),
+        (
+            "Mooney-Rivlin",
+            "<c1>2</c1><c2>1</c2><k>-2</k>",
+            "k = -2: the bulk modulus must be above 0 and at most 29998",
+        ),
+        ("Ogden", "<c1>6</c1><m1>3</m1><k>0</k>", "k = 0: the bulk modulus must be above 0 and at most 14999"),
+    ],
+)
+def test_constants_without_a_stiffness_are_refused_by_their_names(tmp_path, kind, constants, words):
+    with pytest.raises(InputError, match=rf"case.feb: material m: {words}"):
+        read(tmp_path, text(f'<material id="1" name="m" type="{kind}">{constants}</material>'))
+
+
+def test_a_node_of_no_element_stays_where_it_is(tmp_path):
+    """It keeps its number; nothing acts on it, and it is not counted."""
+    stray = text(boundary="", loads=FORCE).replace("<Nodes>", '<Nodes><node id="99">5,5,5</node>')
+    stray = stray.replace("<Boundary>", f"<Boundary>{SLIDING}").replace(
+        '<NodeSet name="right">', '<NodeSet name="right"><n id="99"/>'
+    )
+    case, plain = read(tmp_path, stray), read(tmp_path, text(boundary=SLIDING, loads=FORCE))
+    np.testing.assert_allclose(case.solved(), np.insert(plain.solved(), 0, 0.0, axis=1), atol=1e-14)
+    assert case.norm() == pytest.approx(plain.norm())
