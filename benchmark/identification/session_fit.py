@@ -207,9 +207,13 @@ def fit_warnings(trials: Sequence[TrialFit], pooled: PooledStiffness) -> list[st
     return [text for text in found if text]
 
 
-def elastic_only(trials: Sequence[TrialFit]) -> tuple[str, ...]:
-    """Those of the warnings that hold for the elastic law as told alone, not for one with relaxation or another law."""
-    return tuple(text for text in (_time(trials), _misfit(trials), _at_end(trials)) if text)
+def elastic_only(trials: Sequence[TrialFit], *, followed: bool = False) -> tuple[str, ...]:
+    """Those of the warnings that hold for the elastic law as told alone, not for one with relaxation or another law.
+
+    Where that one has `followed` all conditions, what parts these under one stiffness is among them.
+    """
+    parted = (_conditions(trials), _parted(trials)) if followed else ()
+    return tuple(text for text in (_time(trials), _misfit(trials), _at_end(trials), *parted) if text)
 
 
 def fit_notes(trials: Sequence[TrialFit], pooled: PooledStiffness, joint: JointFit | None) -> list[str]:

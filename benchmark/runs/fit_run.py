@@ -192,7 +192,8 @@ def carry_out_fit(request: FitRequest, listener: Listener) -> FitRecord:
     exported, said = exports(answer.identified, request.export)
     theirs = (f"{one.session.name}: {text}" for one in others for text in one.warnings if text not in found.warnings)
     other = table.law is not None or any(key.endswith(RELAXATION) for key in table.free)
-    idle = elastic_only(found.fit.trials) if other else ()  # of the law as told, which is not what was fitted
+    followed = bool(answer.identified.held_out) and not answer.identified.conflict and not others
+    idle = elastic_only(found.fit.trials, followed=followed) if other else ()  # of a law that is not what was fitted
     own = (text for text in found.warnings if text not in idle)
     found = replace(found, warnings=(*own, *theirs, *said))
     return FitRecord(found, repair, request.seed, answer, exported)

@@ -54,6 +54,10 @@ def dimension_of_key(key: str) -> Dimension:
     return units.DURATION if last == "tau" else units.dimension_of("")
 
 
+AT_END = 1e-6
+"""Of a coordinate: a value so near a bound stands at it."""
+
+
 @dataclass(frozen=True)
 class Prior:
     """What is known of a parameter beforehand: value, standard uncertainty of its coordinate, and who says so."""
@@ -132,6 +136,10 @@ class Parameter:
         """Bounds of the coordinate, the lower first."""
         ends = (self.coordinate(self.low), self.coordinate(self.high))
         return min(ends), max(ends)
+
+    def at_end(self, coordinate: float) -> bool:
+        """Whether a coordinate stands at one of its bounds."""
+        return any(abs(coordinate - end) <= AT_END for end in self.limits)
 
     @property
     def _bulk(self) -> bool:

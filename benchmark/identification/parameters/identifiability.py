@@ -17,10 +17,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.stats import t as student
 
 from benchmark.identification.model_error import COUNT, PLAIN, functions
 from benchmark.identification.parameters.layer_fit import LayerFit
-from benchmark.identification.parameters.layer_model import MM, LayerModel
+from benchmark.identification.parameters.layer_model import GAIN, MM, LayerModel
 from benchmark.identification.parameters.mixed_effects import courses_left
 from benchmark.identification.parameters.presses.press_surrogate import GRID
 from benchmark.response.force_curve import Array
@@ -35,6 +36,9 @@ LEFT_NOISES = 3.0
 OVER_TIME = "one term of relaxation, or none, may be too few:"
 LEFT_ALIKE = 3e-3
 """Share of the force from which on what trials leave alike is told of: a law may be 14 % off with that."""
+SHARED_GAIN, SHARED_GAIN_P, LEAST_GAINS = 0.02, 1e-3, 3
+"""Mean logarithm of the trials' gains from which on it is more than a law or a mesh is off by, the p below which it is
+no chance, and how many trials it takes. First choices."""
 
 SHOWN = 0.2
 """Parts of a direction smaller than this share of the largest are left out of its words."""
@@ -228,3 +232,32 @@ def unfollowed(found: LayerFit) -> list[str]:
                 "what is missing"
             )
     return said
+
+
+def held_off(found: LayerFit, names: Sequence[str]) -> tuple[tuple[str, ...], str]:
+    """Free parameters whose prior or bound keeps them off what the trials ask for, and a warning of it; none, "".
+
+    What trials have in common free values take up. Where a prior or a bound holds these, the gains must, whose scatter
+    then hides that the trials contradict it.
+    """
+    gain, places = shared_gain(found.fit.nuisance[:, GAIN]), zip(names, found.problem.free, strict=True)
+    parameters = [(name, found.problem.parameters[k], float(found.vector[k])) for name, k in places]
+    held = tuple(name for name, one, at in parameters if one.prior is not None or one.at_end(at))
+    if gain is None or not held:
+        return (), ""
+    return held, (
+        f"the forces of all trials are {math.exp(gain):.3g} times the model's, beyond their scatter: the prior or the "
+        f"bounds ([fit.priors], [fit.bounds]) of {', '.join(held)} do not let it follow them"
+    )
+
+
+def shared_gain(gain: Array) -> float | None:
+    """Mean of the trials' gains (R,), logarithms, where it surely is not none; None where that may be chance.
+
+    By Student's t of their scatter about their own mean.
+    """
+    mean = float(gain.mean())
+    if gain.size < LEAST_GAINS or abs(mean) <= SHARED_GAIN:
+        return None
+    error = max(float(gain.std(ddof=1)) / math.sqrt(gain.size), float(np.finfo(float).tiny))
+    return mean if 2.0 * student.sf(abs(mean) / error, gain.size - 1) < SHARED_GAIN_P else None

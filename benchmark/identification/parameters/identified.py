@@ -26,6 +26,7 @@ from benchmark.identification.parameters.identifiability import (
     directions,
     discrepancy_use,
     errors_alone,
+    held_off,
     unfollowed,
 )
 from benchmark.identification.parameters.layer_fit import LayerFit
@@ -190,6 +191,10 @@ class Identified:
                 f"the trials contradict what was told of {', '.join(self.contradicted)}, so that this value, the "
                 "law, the contact or an effect that is not in the model is wrong"
             )
+        parameter, at = self.free[place], float(self.found.vector[self.found.problem.free[place]])
+        if parameter.at_end(at):
+            ends = " to ".join(f"{parameter.scale * each:.4g}" for each in (parameter.low, parameter.high))
+            return f"it stands at the end of what it may be ({ends} {parameter.unit}".rstrip() + "; [fit.bounds])"
         deviation = float(errors_alone(self.found.fit, self.found.problem.free)[place])
         if self.others and largest <= LARGEST_ERROR:
             return "two or more answers away from each other follow the trials equally well"
@@ -238,7 +243,7 @@ class Identified:
         said = [*self.remarks, *([] if self.found.spread is None else [self.found.spread.text])]
         said += [f"{self.conflict}. {ONE_BY_ONE}: {self._values(self.found)}"] if self.conflict else []
         said += [one.warning for one in self.undetermined]
-        said += [*self._leaves, *self._moved_far]
+        said += [*self._leaves, *self._moved_far, *filter(None, self._held[1:])]
         use = discrepancy_use(self.found)
         said += [] if use is None else [use.text]
         said += [f"another answer follows the trials as well: {self._values(one)}" for one in self.others]
@@ -293,8 +298,12 @@ class Identified:
 
     @cached_property
     def contradicted(self) -> tuple[str, ...]:
-        """Told values of the set-up that the trials move further than chance does."""
-        return tuple(one.key for _, one, _, far in self._moved if far > CONTRADICTED)
+        """Told values that the trials move further than chance does, and free ones that are held off what they ask."""
+        return (*(one.key for _, one, _, far in self._moved if far > CONTRADICTED), *self._held[0])
+
+    @cached_property
+    def _held(self) -> tuple[tuple[str, ...], str]:
+        return held_off(self.found, self.names)
 
     @cached_property
     def _moved(self) -> tuple[tuple[int, Parameter, Prior, float], ...]:

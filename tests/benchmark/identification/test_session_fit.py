@@ -231,6 +231,18 @@ def test_elastic_trials_have_no_warning(session, silicone):
     assert fit_session(session(np.random.default_rng(0)), [silicone]).warnings == ()
 
 
+def test_what_parts_conditions_is_not_said_of_a_law_that_follows_them(trial, silicone):
+    two = [
+        trial(f"{name}{n}", name, factor=factor, noise=0.003, seed=n)
+        for name, factor in (("slow", 1.0), ("fast", 1.35))
+        for n in range(3)
+    ]
+    fit = fit_session(two, [silicone])
+    assert any("does not follow all conditions" in text for text in fit.warnings)
+    assert not any("does not follow" in text for text in elastic_only(fit.trials))
+    assert any("does not follow all conditions" in text for text in elastic_only(fit.trials, followed=True))
+
+
 @pytest.mark.parametrize(("factor", "said"), [(1000.0, True), (1.0, False), (1e-3, True)])
 def test_a_stiffness_far_from_that_before_the_fit_asks_for_the_units(trial, silicone, factor, said):
     """Forces in mN under force_N: 38 MPa of skin, without a word."""

@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 
 from benchmark.identification.parameters.free_parameters import Parameter, Prior
-from benchmark.identification.parameters.identifiability import Direction, directions
+from benchmark.identification.parameters.identifiability import Direction, directions, shared_gain
 from benchmark.identification.parameters.identified import NOT_DETERMINED, identify
+from benchmark.identification.parameters.layer_model import GAIN
 from benchmark.identification.parameters.profile_likelihood import profile
 from tests.benchmark.identification.parameters.conftest import MODULI, TRUTH
 
@@ -86,6 +87,50 @@ def test_nothing_is_determined_where_the_trials_contradict_what_was_told(toy_fit
     if contradicted:
         assert f"{MODULI[2]} {NOT_DETERMINED}" in told.headline
         assert all("contradict what was told of specimen.thickness" in one.reason for one in told.estimates)
+
+
+def held(told, *, prior=None, at_bound=False, gains=None):
+    """An answer whose first free value has a prior or stands at its bound, and whose trials have gains of their own."""
+    place, fit = told.found.problem.free[0], told.found.fit
+    parameters, vector, nuisance = list(told.found.problem.parameters), fit.vector.copy(), fit.nuisance.copy()
+    parameters[place] = replace(parameters[place], prior=prior)
+    if at_bound:
+        vector[place] = parameters[place].limits[0]
+    if gains is not None:
+        nuisance[:, GAIN] = gains
+    problem = replace(told.found.problem, parameters=tuple(parameters))
+    made = replace(told, found=replace(told.found, problem=problem, fit=replace(fit, vector=vector, nuisance=nuisance)))
+    made.__dict__.update(_left=told._left, _unfollowed=told._unfollowed, directions=told.directions)
+    return made
+
+
+def test_a_prior_that_the_trials_contradict_does_not_win_in_silence(toy_fit) -> None:
+    """80 kPa +/- 2 % made of trials that say 40: "determined", each with a gain of one half."""
+    told, prior = answer(toy_fit()), Prior(80e3, 0.02, "a paper")
+    half = np.log(0.5) + 0.01 * np.tile([1.0, -1.0], 5)
+    name = told.names[0]
+    contradicted = held(told, prior=prior, gains=half)
+    assert contradicted.contradicted == (name,)
+    assert not any(one.identifiable for one in contradicted.estimates)
+    assert any(
+        "0.5 times the model's, beyond their scatter: the prior or the bounds" in w for w in contradicted.warnings
+    )
+    for gains in (half - half.mean(), 0.5 * np.tile([1.0, -0.8], 5)):
+        assert held(told, prior=prior, gains=gains).contradicted == ()
+    assert held(told, gains=half).contradicted == ()  # of a free value no prior holds back
+
+
+def test_a_value_at_its_bound_is_called_so(toy_fit) -> None:
+    told = held(answer(toy_fit()), at_bound=True)
+    assert "it stands at the end of what it may be (" in told._reason(0, 0.1)
+    assert held(answer(toy_fit()), at_bound=True, gains=np.full(10, -0.4)).contradicted == (told.names[0],)
+
+
+@pytest.mark.parametrize(
+    ("gains", "mean"), [((0.03, 0.031, 0.029), 0.03), ((0.1, -0.1, 0.1), None), ((0.5, 0.5), None)]
+)
+def test_gains_that_trials_share_surely_are_no_scatter(gains, mean) -> None:
+    assert shared_gain(np.array(gains)) == (None if mean is None else pytest.approx(mean))
 
 
 def test_directions_are_said_in_words() -> None:
