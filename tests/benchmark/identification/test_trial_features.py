@@ -145,6 +145,12 @@ def test_a_depth_that_grows_under_a_held_force_is_a_creep(trial, noise):
 def test_neither_a_steady_depth_nor_a_saturated_sensor_nor_a_slow_press_is_a_creep(trial):
     assert largest_creep(pressed_by_force(trial, lambda t: 2.5e-3 * np.minimum(t, 2.0), noise=0.02)) == 0.0
     assert largest_creep(pressed_by_force(trial, lambda t: 2.5e-3 * t)) == 0.0
+    touch = 1.24e-3 - 0.19e-3 * np.exp(-np.linspace(0.0, 2.0, 90))  # a fifth of the force, ever slower
+    slow = np.r_[np.zeros(20), touch, np.linspace(1.3e-3, 5e-3, 50)]
+    assert largest_creep(TrialData("a", "b", trial().time, slow, 400.0 * slow, trial().curve)) == 0.0
+    for seed in range(20):
+        noise = 1e-4 * np.random.default_rng(seed).normal(size=trial().rows)
+        assert largest_creep(pressed_by_force(trial, lambda t, n=noise: 2.5e-3 * np.minimum(t, 2.0) + n)) == 0.0
     made = trial()
     depth = 5e-3 * np.sqrt(np.linspace(0.0, 1.0, made.rows))  # ever slower, and the force with it
     for power in (1.0, 1.5, 2.0):

@@ -13,6 +13,7 @@ from benchmark.discovery.planning.proposing import (
     _calibrations,
     _distinct,
     _own_condition,
+    _tools,
     enough_trials,
     propose,
     usual_press,
@@ -218,6 +219,22 @@ def test_a_tool_that_would_press_too_hard_is_pressed_less_deep(monkeypatch) -> N
     assert 0.0 < motion(less, 400)[1].max() <= 1e-3
     assert "since deeper would be too hard" in less.words
     assert "hold for 12.8 s" in less.words
+
+
+def test_the_tools_of_the_menu_are_pressed_no_harder_than_the_bench_bears(monkeypatch) -> None:
+    """A session's press of 2 mm, under tools that all ask for 8 N a mm."""
+    monkeypatch.setattr(proposing, "expected", lambda *given: SimpleNamespace(signals=8e3 * given[3][:, None]))
+    monkeypatch.setattr(proposing, "under", lambda rival, *_: rival)
+    monkeypatch.setattr(
+        proposing, "_simulated", lambda a, b, condition, experiment, most: motion(experiment, 400)[1].max()
+    )
+    condition = _condition("bonded")
+    tool = SimpleNamespace(radius=5e-3, model_copy=lambda update: SimpleNamespace(**update))
+    condition.__dict__.update(tool=tool, name="slow", setup=(SimpleNamespace(thickness=20e-3), tool, condition.support))
+    for most_force, deepest in ((10.0, 1e-3), (100.0, 2e-3)):
+        seen = _tools(_rival("a"), _rival("b"), condition, lambda *_: object(), Allowed(most_force), 1)
+        assert len(seen) == 4
+        assert all(size == pytest.approx(deepest, rel=0.02) for _, size in seen.values())
 
 
 def test_a_rigid_block_is_for_a_rig_that_gives_way() -> None:
