@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 import socket
 import time
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
 from urllib.parse import SplitResult, urlsplit
@@ -33,10 +34,11 @@ class StreamError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """One part of the stream: its header (lower-case names) and its body."""
+    """One part of the stream: its header (lower-case names), its body, and when that had come, s."""
 
     header: Mapping[str, str]
     body: bytes
+    arrived: float = 0.0
 
 
 class MultipartParser:
@@ -51,9 +53,13 @@ class MultipartParser:
     def __init__(self, boundary: str) -> None:
         self._line = b"--" + boundary.strip('"').removeprefix("--").encode("latin-1")
         self._buffer = bytearray()
+        self._chunks: deque[tuple[int, float]] = deque()  # buffered bytes up to its end, and when it came
 
-    def feed(self, data: bytes) -> list[Part]:
-        """Take the next bytes and give the parts that are whole now.
+    def feed(self, data: bytes, now: float = 0.0) -> list[Part]:
+        """Take the bytes that came at `now`, s, and give the parts that are whole now.
+
+        A part without a length is known to be whole by the next one's boundary, which many cameras send with the next
+        picture; it had come all the same when its last byte did.
 
         Raises
         ------
@@ -61,6 +67,7 @@ class MultipartParser:
             A head above 16 KiB, a part above 32 MiB, or a length that is no number.
         """
         self._buffer += data
+        self._chunks.append((len(self._buffer), now))
         parts: list[Part] = []
         while (part := self._next()) is not None:
             parts.append(part)
@@ -81,8 +88,10 @@ class MultipartParser:
         if stop is None:
             self._check(body + _LARGEST_PART, "a part without an end")
             return None
-        part = Part(header, bytes(self._buffer[body:stop]))
+        arrived = next(when for end, when in self._chunks if end >= stop)
+        part = Part(header, bytes(self._buffer[body:stop]), arrived)
         del self._buffer[:stop]
+        self._chunks = deque((end - stop, when) for end, when in self._chunks if end >= stop)
         return part
 
     def _end_of_body(self, header: Mapping[str, str], body: int) -> int | None:
@@ -295,11 +304,11 @@ class HttpCamera(Connection):
     def _frames(self, data: bytes) -> list[CameraFrame]:
         now = self._clock.now()
         try:
-            parts = self._parser.feed(data)
+            parts = self._parser.feed(data, now)
         except StreamError as error:
             raise DeviceError(f"camera at {self._url}: {error}") from error
         return [
-            self._counter.frame(self._taken(part, now), part.body, "jpeg", _sequence(part.header.get("x-frame")))
+            self._counter.frame(self._taken(part), part.body, "jpeg", _sequence(part.header.get("x-frame")))
             for part in parts
             if self._is_picture(part.body)
         ]
@@ -314,10 +323,10 @@ class HttpCamera(Connection):
             raise DeviceError(f"camera at {self._url}: gives {shown} pixels; the rig asks for {wanted} (camera.size)")
         return found is not None
 
-    def _taken(self, part: Part, now: float) -> float:
-        """When a frame was taken, as far as can be told at `now`, s."""
+    def _taken(self, part: Part) -> float:
+        """When a frame was taken, as far as can be told, s."""
         text = part.header.get("x-timestamp", "") if self._same_clock else ""
-        return min(float(text), now) if _SECONDS.fullmatch(text) else now
+        return min(float(text), part.arrived) if _SECONDS.fullmatch(text) else part.arrived
 
     def _lost(self, error: OSError) -> DeviceError:
         return DeviceError(f"camera at {self._url}: {error.strerror or error}; check address, cable and power")

@@ -34,6 +34,17 @@ def test_any_cut_of_the_stream_gives_the_same_pictures(bodies, with_length, cuts
     assert [p.header["x-frame"] for p in got] == [str(k) for k in range(len(bodies))]
 
 
+@pytest.mark.parametrize("with_length", [True, False])
+def test_a_picture_had_come_when_its_last_byte_did(with_length):
+    """Without a length that is known by the next boundary only, which comes with the next picture."""
+    parser, got = MultipartParser("frame"), []
+    for k in range(3):
+        picture = part(b"abcdefgh", k, with_length)
+        got += parser.feed(picture[:-6], k + 0.25) + parser.feed(picture[-6:], k + 0.5)
+    got += parser.feed(b"--frame\r\n", 3.0)
+    assert [p.arrived for p in got] == [0.5, 1.5, 2.5]
+
+
 @pytest.mark.parametrize("boundary", ["frame", "--frame", '"frame"'])
 def test_boundaries_as_servers_write_them(boundary):
     assert [p.body for p in MultipartParser(boundary).feed(part(b"abc"))] == [b"abc"]
