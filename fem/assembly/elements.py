@@ -213,12 +213,14 @@ def make_elements(geometry: ElementGeometry, laws: ElementLaws, stabilisation: f
     geometry, laws
         Geometry at the Gauss points and laws.
     stabilisation
-        Part of the bulk modulus, in shear moduli (at most half of it), that acts on J at each Gauss point
-        instead of on the pressure field. It takes nothing from the continuum's energy, but Q2/P1 controls only
-        three moments of J on an element, and at large strain the rest can become unstable (Pantuso and
-        Bathe, Finite Elements in Analysis and Design 28 (1997) 83).
+        Part of the bulk modulus, in shear moduli, that acts on J at each Gauss point instead of on the pressure
+        field: at most half of it, or all of it where the pressure is constant. It takes nothing from the
+        continuum's energy, but Q2/P1 controls only three moments of J on an element, and at large strain the rest
+        can become unstable (Pantuso and Bathe, Finite Elements in Analysis and Design 28 (1997) 83); a constant
+        pressure controls one.
     """
-    at_points: FloatArray = np.minimum(stabilisation * laws.shear_modulus, 0.5 * laws.bulk_modulus)
+    most = 1.0 if len(geometry.pressure) == 1 else 0.5
+    at_points: FloatArray = np.minimum(stabilisation * laws.shear_modulus, most * laws.bulk_modulus)
     if len(geometry.pressure) == 0:
         at_points = laws.bulk_modulus
     shape = (len(geometry.components.positions), *geometry.weight.shape)

@@ -32,6 +32,7 @@ from fem.setup.supports import SUPPORT_MODELS
 
 ITERATIVE_FROM = {"linear": 70_000, "finite": 100_000}
 """Unknowns from which on the iterative solver is faster, by kinematics: it does more for each Newton correction."""
+OF_TETRAHEDRA = 10.0  # least stabilisation of P2/P0; set on a slab of one layer, docs/fem.md
 
 
 def build_model(problem: Problem, linear_solver: str, mesh_file: Path | None = None) -> Model:
@@ -187,5 +188,11 @@ def _pretension(problem: Problem, components: Components) -> FloatArray | None:
 
 
 def stabilisation(problem: Problem) -> float:
-    """Part of the bulk modulus, in shear moduli, that acts at the Gauss points; small strain needs none."""
-    return problem.discretisation.stabilisation if problem.kinematics == "finite" else 0.0
+    """Part of the bulk modulus, in shear moduli, that acts at the Gauss points.
+
+    Q2/P1 at small strain needs none. The tetrahedra of a body from a surface do at any strain: quadratic displacements
+    with a constant pressure (P2/P0) have no node in a face that could keep what flows through it in balance, and are
+    too soft by some per cent on each mesh (docs/fem.md has the figures).
+    """
+    asked = problem.discretisation.stabilisation if problem.kinematics == "finite" else 0.0
+    return max(asked, OF_TETRAHEDRA) if problem.geometry == "surface" else asked

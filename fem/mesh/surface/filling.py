@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import scipy.sparse as sp
+import scipy.spatial
 import skfem
 
 from fem.arrays import BoolArray, FloatArray, IntArray
@@ -26,7 +27,8 @@ TOLERANCE_OF_LAYER = 0.2
 STOP_ENERGY = 20.0  # of the mesher's optimisation; mean ratios stay above 0.1
 PASSES = 10
 BACKGROUND = 14
-SLEEVE_SIDES = 32
+CLOSE, CLOSE_LINES = 1.5, 6  # in tool radii from where it touches; lines for each of them
+SLEEVE_SIDES = 64
 SLEEVE_HEIGHTS = (-0.5, 0.2)  # in tool radii from the place it touches
 TOLERANCE_OF_TOOL = 0.04  # of the tool's radius
 FORMAT = "fem tetrahedra 1"
@@ -42,14 +44,18 @@ class Refinement:
         Where the tool's axis meets the surface, (3,) in m; the mesh is fine round it.
     radius
         Radius in m of the tool and of the fine region.
-    fine, coarse
-        Edge length in m there and far away.
+    edge
+        Places (k, 3) in m of the tool's edge on the surface, where the traction or its gradient is singular.
+    at_edge, fine, coarse
+        Edge length in m there, under the tool and far away.
     growth
         Growth of the edge length per metre of distance.
     """
 
     place: FloatArray
     radius: float
+    edge: FloatArray
+    at_edge: float
     fine: float
     coarse: float
     growth: float
@@ -57,8 +63,19 @@ class Refinement:
     def length(self, points: FloatArray) -> FloatArray:
         """Wanted edge length (n,) in m at points (n, 3)."""
         distance = np.maximum(np.linalg.norm(points - self.place, axis=1) - self.radius, 0.0)
-        out: FloatArray = np.minimum(self.coarse, self.fine + self.growth * distance)
+        nearest, _ = scipy.spatial.KDTree(self.edge).query(points)
+        graded = np.minimum(self.fine + self.growth * distance, self.at_edge + self.growth * nearest)
+        out: FloatArray = np.minimum(self.coarse, graded)
         return out
+
+    def grid(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, ...]:
+        """Lines in x, y and z in m of a box's grid on which the lengths are told, close together at the tool."""
+        near = self.radius * np.linspace(-CLOSE, CLOSE, round(2 * CLOSE * CLOSE_LINES) + 1)
+        lines = [
+            np.unique(np.concatenate((np.linspace(a, b, BACKGROUND), near[(x + near > a) & (x + near < b)] + x)))
+            for a, b, x in zip(low, high, self.place, strict=True)
+        ]
+        return tuple(line[np.diff(line, prepend=-np.inf) > 1e-6 * self.radius] for line in lines)
 
 
 def fill(surface: Surface, depths: FloatArray, refinement: Refinement) -> tuple[FloatArray, IntArray, IntArray]:
@@ -138,7 +155,7 @@ def _tetrahedra(surface: Surface, depths: FloatArray, refinement: Refinement) ->
     diagonal = float(np.linalg.norm(soup[0].size))
     thinnest = float(np.diff(depths, prepend=0.0).min()) if len(depths) else diagonal
     low, high = soup[0].points.min(axis=0), soup[0].points.max(axis=0)
-    background = skfem.MeshTet.init_tensor(*(np.linspace(a, b, BACKGROUND) for a, b in zip(low, high, strict=True)))
+    background = skfem.MeshTet.init_tensor(*refinement.grid(low, high))
     found, tetrahedra = tetrahedralize_apart(
         vertices=points,
         faces=triangles.astype(np.int32),
@@ -221,8 +238,9 @@ def kept_filling(
     """
     if keep is None:
         return fill(surface, depths, refinement)
-    lengths = (refinement.radius, refinement.fine, refinement.coarse, refinement.growth)
-    owner = fingerprint(lengths, (surface.points, surface.triangles, np.asarray(depths), refinement.place))
+    lengths = (refinement.radius, refinement.at_edge, refinement.fine, refinement.coarse, refinement.growth)
+    shapes = (surface.points, surface.triangles, np.asarray(depths), refinement.place, refinement.edge)
+    owner = fingerprint(lengths, shapes)
     try:
         found = read_kept(keep, FORMAT, owner)
     except CheckpointError:

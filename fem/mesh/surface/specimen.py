@@ -23,6 +23,8 @@ WORST = 1e-3
 UNLIKE = "the mesher takes no seed on this system: each run has another mesh, and differs by what the mesh is worth"
 MOST_VOLUME_ERROR = 0.1
 LARGEST_BODY = 100.0  # in tool radii: a larger one is remarked upon
+FINER_AT_EDGE = 8.0  # elements at the tool's edge than under its middle
+EDGE_PLACES = 64  # at which the tool's edge is sought on the surface
 PARTS = 16  # of each side of a face, where the tool's circle is integrated
 
 
@@ -57,7 +59,8 @@ def build_surface_mesh(
     place = touch_point(surface, x, y)
     fine = radius / (2.0 * density)
     coarse = max(fine, float(surface.size.max()) / (10.0 * density))
-    refinement = Refinement(place, radius, fine, coarse, 0.5 / density)
+    edge = _tool_edge(surface, place, radius)
+    refinement = Refinement(place, radius, edge, fine / FINER_AT_EDGE, fine, coarse, 0.5 / density)
     points, tetrahedra, layer = kept_filling(surface, np.cumsum(thickness[:-1]), refinement, keep)
     points = _with_vertex(points, tetrahedra, place)
     quality = measure_quality(points, tetrahedra, layer, surface.volume)
@@ -166,6 +169,19 @@ def touch_point(surface: Surface, x: float, y: float) -> FloatArray:
         )
     height = np.einsum("kt,kt->t", share, np.stack((a[:, 2], b[:, 2], c[:, 2])))
     return np.array([x, y, float(height[hit].max())])
+
+
+def _tool_edge(surface: Surface, place: FloatArray, radius: float) -> FloatArray:
+    """Places (k, 3) in m of the tool's edge on the surface; at its place where all of it overhangs."""
+    turn = np.linspace(0.0, 2.0 * np.pi, EDGE_PLACES, endpoint=False)
+    x, y = place[0] + radius * np.cos(turn), place[1] + radius * np.sin(turn)
+    found = []
+    for a, b in zip(x, y, strict=True):
+        try:
+            found.append(touch_point(surface, a, b))
+        except FemError:
+            continue
+    return np.array(found or [place])
 
 
 def quadratic(points: FloatArray, tetrahedra: IntArray) -> tuple[FloatArray, IntArray]:
