@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import sys
 import threading
 from collections.abc import Iterator
@@ -222,11 +223,17 @@ class _Session:
             if "camera" in keys:
                 keys["camera"] |= {"file": CAMERA_FILE} | camera_place(order.rig.rig)
         self._folder.begin(order, keys)
+        if order.append and (other := self._folder.other_rig(order)):
+            self._context.progress.say(
+                f"--append: the session's trials were recorded with the rig {other!r}, these are with "
+                f"{order.rig.rig.name!r}; they are read as trials of one bench"
+            )
 
     def _header(self, name: str, zero: float) -> TrialHeader:
         infos, order = self._bench.infos(), self._order
         settings = {f"{device}.{key}": value for device, info in infos.items() for key, value in info.settings.items()}
         settings |= {"depth_zero": f"{zero * 1e3:.4f} mm", "condition": self._condition, "rig": order.rig.text}
+        settings["session"] = json.dumps(self._folder.told)
         return TrialHeader(
             name=name,
             started=datetime.now(UTC).isoformat(),
@@ -250,6 +257,8 @@ def _missing(health: dict[str, dict[str, int]]) -> Iterator[str]:
     force, camera = health["force"], health.get("camera", {})
     if lost := force["lost"]:
         yield f"{lost} of {force['received'] + lost} force records are lost"
+    if malformed := force["malformed"]:
+        yield f"{malformed} datagrams of the force sensor were no records"
     if dropped := camera.get("dropped", 0):
         yield f"{dropped} of {camera['received'] + dropped} pictures are lost"
     if frozen := camera.get("frozen", 0):

@@ -100,6 +100,17 @@ class SessionFolder:
                 self.keep(source.name, read_toml(source)[1])
         _merge(self._session, _keys_of(order))
 
+    @property
+    def told(self) -> dict[str, Any]:
+        """What the session's file says, or will say once a trial is whole, but for its trials."""
+        return {key: value for key, value in self._session.items() if key != "trials"}
+
+    def other_rig(self, order: CaptureOrder) -> str | None:
+        """Name of the rig that the session's last capture was made with, where it is another than this one's."""
+        logs = sorted(self.path.glob("capture*.json"), key=lambda path: path.stat().st_mtime)
+        name = _logged(logs[-1]).get("rig") if logs else None
+        return name if isinstance(name, str) and name != order.rig.rig.name else None
+
     def add_trial(self, file: Path, condition: str) -> None:
         """Add a trial to `session.toml`.
 
@@ -111,7 +122,7 @@ class SessionFolder:
         import tomli_w
 
         trials = [*self._session.get("trials", []), {"file": file.name, "condition": condition}]
-        self._session = {**{key: value for key, value in self._session.items() if key != "trials"}, "trials": trials}
+        self._session = {**self.told, "trials": trials}
         write_text(self.path / SESSION_FILE, tomli_w.dumps(self._session), check_session_file)
 
     def write_log(self, order: CaptureOrder, devices: dict[str, DeviceInfo], entry: dict[str, Any]) -> None:
@@ -129,6 +140,7 @@ class SessionFolder:
             "protocol": order.protocol.protocol.name,
             "synthetic": order.rig.rig.synthetic,
             "devices": {name: asdict(info) for name, info in devices.items()},
+            "session": self.told,
             "trials": self._log,
         }
         write_text(self.path / self._log_name(), json.dumps(written, indent=2) + "\n")
@@ -160,6 +172,8 @@ class SessionFolder:
     def _existing(self) -> dict[str, Any]:
         path = self.path / SESSION_FILE
         if not path.is_file():
+            if told := _told_before(self.path / LOG_FILE):
+                return told
             empty = not self.path.is_dir() or not any(self.path.iterdir())
             new = "leave --append out for a new one" if empty else "give another --out, without --append, for a new one"
             raise InputError(f"{path}: there is no session to append to; {new}{self._cut_off()}")
@@ -237,6 +251,25 @@ class SessionFolder:
             return shutil.disk_usage(self.path).free
         except OSError as error:
             raise InputError(f"{self.path}: cannot be written ({error.strerror}); give another --out") from error
+
+
+def _logged(path: Path) -> dict[str, Any]:
+    """What a capture's log says; nothing where there is none or it cannot be read."""
+    try:
+        found = json.loads(read_regular(path))
+    except (OSError, ValueError, RecursionError):
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+def _told_before(path: Path) -> dict[str, Any]:
+    """What a session's log tells of its set-up where a fault ended its first trial; else nothing."""
+    log = _logged(path)
+    told, trials = log.get("session"), log.get("trials")
+    if not isinstance(told, dict) or not isinstance(trials, list) or not all(one.get("fault") for one in trials):
+        return {}
+    check_session(told, f"{path}, session")
+    return told
 
 
 def _numbered(number: int) -> str:

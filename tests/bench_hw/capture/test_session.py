@@ -307,6 +307,36 @@ def test_pictures_of_a_camera_calibrated_otherwise_are_not_appended(record, sess
     record(append=True)  # without a camera there is nothing to read by it
 
 
+def test_the_set_up_is_kept_where_a_fault_ends_the_first_trial(order, record, session, watcher):
+    """In the trial and the log; what is appended then makes the session's file."""
+    keys, limit = {"tool.radius": "3.21 mm"}, {"safety": {"force_limit": "0.3 N"}}
+    capture(order(rig=limit, specimen="skin_forearm", session_keys=keys), watcher())
+    assert not (session / "session.toml").exists()
+    told = json.loads((session / "capture.json").read_text())["session"]
+    assert (told["specimen"], told["tool"]["radius"]) == ("skin_forearm", "3.21 mm")
+    assert json.loads(read_contents(session / "trial_001.mcap").header.settings["session"]) == told
+    with pytest.raises(InputError, match=r"--set tool.radius=4 mm: .* has '3.21 mm', which stays with --append"):
+        record(append=True, session_keys={"tool.radius": "4 mm"})
+    record(append=True)
+    listed = tomllib.loads((session / "session.toml").read_text())
+    assert [trial["file"] for trial in listed.pop("trials")] == ["trial_002.mcap"]
+    assert listed == told
+
+
+def test_trials_of_another_rig_are_appended_with_a_word(order, record, watcher):
+    seen = watcher()
+    record()
+    record(append=True, progress=seen)
+    assert seen.said == []
+    asked = order(append=True)
+    other = asked.rig.rig.model_copy(update={"name": "the other"})
+    capture(replace(asked, rig=replace(asked.rig, rig=other)), seen)
+    assert seen.said == [
+        "--append: the session's trials were recorded with the rig 'simulated', these are with 'the other'; they are "
+        "read as trials of one bench"
+    ]
+
+
 def test_appending_needs_a_session(record):
     with pytest.raises(InputError, match="no session to append to; leave --append out"):
         record(append=True)
