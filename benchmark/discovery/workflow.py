@@ -59,6 +59,7 @@ from benchmark.discovery.evidence.parameter_evidence import (
     at_bounds,
     constant,
     moved_far,
+    told_together,
     undetermined,
     unsteady,
 )
@@ -329,7 +330,7 @@ def _discovery(
     nothing = word in ("cannot_tell", "no_discrepancy")
     problem, slugs = base.model.problem, tuple(effect.slug for effect in chosen.model.effects)
     closed = {slugs: closed_overall(base, answer.held)} if slugs else {}
-    beside = () if nothing else (*moved_far(chosen), *at_bounds(chosen))
+    beside = () if nothing else (*moved_far(chosen), *at_bounds(chosen), *told_together(chosen))
     large = (*large_remarks(problem, chosen.nuisance), *beside)
     few = remark(len(answer.selection.base.model.problem.trials), len(problem.trials))
     return Discovery(

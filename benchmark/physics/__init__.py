@@ -11,6 +11,7 @@ from benchmark.physics.effect import (
     NotInFemError,
     PressHistory,
     Readings,
+    Together,
     TrialContext,
 )
 from benchmark.physics.registry import SLUGS, catalogue, load_effects, option_effects
@@ -29,6 +30,7 @@ __all__ = [
     "Option",
     "PressHistory",
     "Readings",
+    "Together",
     "TrialContext",
     "catalogue",
     "load_effects",

@@ -228,6 +228,28 @@ class NotInFemError(Exception):
 
 
 @dataclass(frozen=True)
+class Together:
+    """What some trials tell of several parameters of an effect, and of none by itself.
+
+    Attributes
+    ----------
+    words : str
+        What it is.
+    unit : str
+        SI.
+    of : (values, context) -> float
+        From the parameters and the deepest condition.
+    apart : str
+        What tells the parameters apart.
+    """
+
+    words: str
+    unit: str
+    of: Callable[[Values, TrialContext], float]
+    apart: str
+
+
+@dataclass(frozen=True)
 class FemTerm:
     """How the FEM carries an effect by itself.
 
@@ -298,6 +320,8 @@ class Effect:
         The parameter that is a depth which the record of the depth must resolve.
     seen_by : str
         The parameter by which it shows in markers too, where there are some: what they do not show is another effect.
+    together : Together or None
+        What trials tell of its parameters where they tell none of them by itself.
     richer : Effect or None
         The same effect with one more term, tried where this one is accepted.
     further_terms_of : str
@@ -325,6 +349,7 @@ class Effect:
     acts_within: Callable[[Values, TrialContext], float] | None = None
     in_depth: str = ""
     seen_by: str = ""
+    together: Together | None = None
     richer: Effect | None = None
     further_terms_of: str = ""
     origin: str | None = None

@@ -162,7 +162,7 @@ class Descent(Generic[Fitted]):
             self.at.vector,
             self.at.nuisance,
             self.objective,
-            _blocks(self.model, columns, self.at),
+            trial_blocks(self.model, columns, self.at),
             self.precision,
             self.prior_mean,
             columns,
@@ -256,7 +256,7 @@ def one_step(
     mean, precision
         (p,) of the priors on the vector.
     """
-    blocks = _blocks(model, columns, at)
+    blocks = trial_blocks(model, columns, at)
     start = TrialsFit(model, at.vector, at.nuisance, 0.0, blocks, precision, mean, columns)
     vector = start.without(np.zeros(len(blocks.slope), dtype=bool))
     step = vector - at.vector
@@ -305,7 +305,7 @@ def _held(model: TrialsModel, pull: Array, own: Array, index: int) -> NDArray[np
     return np.asarray(((own <= limits[0][index]) & (pull <= 0.0)) | ((own >= limits[1][index]) & (pull >= 0.0)))
 
 
-def _blocks(model: TrialsModel, columns: TrialColumns, at: TrialsEvaluation) -> Blocks:
+def trial_blocks(model: TrialsModel, columns: TrialColumns, at: TrialsEvaluation) -> Blocks:
     """What each trial says, as if its nuisances began at zero; those at a bound stay there."""
     matrices, slopes, misfits, sizes = [], [], [], []
     weight = model.trial_precision

@@ -12,22 +12,23 @@ from scipy.stats import chi2
 from benchmark.comparison.percent_error import plain_percent
 from benchmark.discovery import criteria
 from benchmark.discovery.base.bent_form import added_by
-from benchmark.discovery.base.effect_model import Fit
+from benchmark.discovery.base.effect_model import Fit, finely
 from benchmark.discovery.base.setup_priors import shares
 from benchmark.discovery.discovery_result import Array, ConditionEstimate, Estimate
 from benchmark.discovery.evidence.gains import conditions
-from benchmark.physics import Effect, EffectParameter
+from benchmark.files.units import shown
+from benchmark.physics import Effect, EffectParameter, Together
 from benchmark.physics.setup_entry import effect_name, setup_key
 from benchmark.response.least_squares import scaled_inverse
 
 
 def effect_estimates(fitted: Fit) -> tuple[tuple[str, Estimate], ...]:
     """(slug, estimate) of every parameter of the effects."""
-    first, half = fitted.model.shape_count, half_widths(fitted)
+    first, half, fine = fitted.model.shape_count, half_widths(fitted), finely(fitted)
     values = fitted.model.values(fitted.vector)
     out = []
     for k, (slug, p) in enumerate(fitted.model.parameters, start=first):
-        inner = (fitted.vector[k] - half[k], fitted.vector[k] + half[k]) if has_slope(fitted, k) else walked(fitted, k)
+        inner = (fitted.vector[k] - half[k], fitted.vector[k] + half[k]) if has_slope(fine, k) else walked(fitted, k)
         ends = _outer(p, inner[0]), _outer(p, inner[1])
         out.append((slug, Estimate(p.name, values[slug][p.name], p.unit, ends)))
     return tuple(out)
@@ -87,6 +88,38 @@ def at_bounds(fitted: Fit) -> tuple[str, ...]:
     )
 
 
+def told_together(fitted: Fit) -> tuple[str, ...]:
+    """A sentence for each effect whose strength may be none by its own interval, though what it does is told."""
+    estimates, out = effect_estimates(fitted), []
+    for effect in fitted.model.effects:
+        open_ended = any(s == effect.slug and e.name == effect.amplitude and e.ci95[0] <= 0.0 for s, e in estimates)
+        if effect.together is None or not open_ended:
+            continue
+        value, half = _together(fitted, effect.slug, effect.together)
+        if half < value:
+            unit = shown(value, effect.together.unit)[1]
+            each, low, high = (shown(v, effect.together.unit)[0] for v in (value, value - half, value + half))
+            out.append(
+                f"{effect_name(effect.slug)}: these trials do not tell {effect.amplitude} by itself, but "
+                f"{effect.together.words} of {each:.3g} {unit} ({low:.3g} to {high:.3g}); {effect.together.apart} "
+                "would tell its parameters apart"
+            )
+    return tuple(out)
+
+
+def _together(fitted: Fit, slug: str, together: Together) -> tuple[float, float]:
+    """What an effect's parameters are told as, and the half width of its 95 % interval."""
+    fine, model = finely(fitted), fitted.model
+    around = max((each.around for each in model.problem.study.conditions), key=lambda around: around.peak_depth)
+    value, slopes = together.of(model.values(fitted.vector)[slug], around), np.zeros(fitted.vector.size)
+    for k, error in enumerate(np.sqrt(np.maximum(np.diag(fine.covariance), 0.0)).tolist()):
+        moved = fitted.vector.copy()
+        moved[k] += FINE_SHARE * error
+        slopes[k] = (together.of(model.values(moved)[slug], around) - value) / max(FINE_SHARE * error, 1e-300)
+    variance = max(float(slopes @ m @ slopes) for m in (fine.covariance, sandwich(fine)))
+    return value, criteria.NORMAL_95 * math.sqrt(variance)
+
+
 def moved_far(fitted: Fit) -> tuple[str, ...]:
     """A warning of what was told of the set-up and lies far off beside a fit's effects.
 
@@ -117,8 +150,8 @@ def _outer(parameter: EffectParameter, inner: float) -> float:
 
 def half_widths(fitted: Fit) -> Array:
     """(p,) half widths of the vector's 95 % intervals, widened to the trials' actual scatter (sandwich estimate)."""
-    inner = fitted.covariance
-    variance = np.maximum(np.diag(inner), np.diag(sandwich(fitted)))
+    fine = finely(fitted)
+    variance = np.maximum(np.diag(fine.covariance), np.diag(sandwich(fine)))
     return np.asarray(criteria.NORMAL_95 * np.sqrt(np.maximum(variance, 0.0)))
 
 
@@ -132,6 +165,8 @@ def sandwich(fitted: Fit) -> Array:
 
 FIRST_WALK, WALK_HALVINGS = 0.01, 8
 """Of a number's size, the first step along its profile; and how often its end is halved."""
+FINE_SHARE = 1e-6
+"""Of a standard error, by which a smooth function of the parameters is differentiated."""
 SLOPE_STEP = 0.005
 """By which, in standard errors, a parameter is changed for the slope of what an effect adds: one of which trials tell
 nothing by a slope, as the reach of a pull, has its prior's, and what it adds is straight on a small part of that."""
@@ -339,6 +374,7 @@ def by_condition(fitted: Fit) -> tuple[tuple[str, ConditionEstimate], ...]:
     numbers = np.unique(groups)
     if numbers.size < 2:
         return ()
+    fitted = finely(fitted)
     first, out = fitted.model.shape_count, []
     for number in numbers:
         own = fitted.without(groups != number)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from benchmark.physics.description import EffectDescription, Option, linear, logarithmic
-from benchmark.physics.effect import Effect, LowerFaceMotion, PressHistory, TrialContext, Values
+from benchmark.physics.effect import Effect, LowerFaceMotion, PressHistory, Together, TrialContext, Values
 
 if TYPE_CHECKING:
     from wavemodel.physics import PermanentSet
@@ -93,5 +93,10 @@ def _delayed_starts(context: TrialContext) -> tuple[dict[str, float], ...]:
     return tuple(first | {"permanent_set_delay": share * context.duration} for share in delays)
 
 
-LATE = Effect(DELAYED, "permanent_set", body=_body, lower_face=_lower_face, starts=_delayed_starts)
+def _deepest_set(values: Values, context: TrialContext) -> float:
+    return values["permanent_set"] * max(context.peak_depth - values["permanent_set_onset"], 0.0)
+
+
+SET = Together("a set of the surface after the deepest press", "m", _deepest_set, "presses to other depths")
+LATE = Effect(DELAYED, "permanent_set", body=_body, lower_face=_lower_face, starts=_delayed_starts, together=SET)
 EFFECT = replace(LATE, description=DESCRIPTION, starts=_starts, richer=LATE)

@@ -69,6 +69,7 @@ def test_the_chosen_candidate_stands_first_then_single_ones_by_gain(monkeypatch)
 def linear_fit(scatter, parameters, vector, variance):
     """A fit of R trials whose slopes (R, p) scatter, with covariance of a diagonal."""
     model = SimpleNamespace(
+        effects=(),
         shape_count=0,
         parameters=tuple(("effect", each) for each in parameters),
         values=lambda v: {"effect": dict(zip([p.name for p in parameters], v, strict=True))},

@@ -31,6 +31,12 @@ from benchmark.physics.description import EffectParameter
 SETTINGS = Settings()
 
 
+@pytest.fixture(autouse=True)
+def _fine(monkeypatch):
+    """Derivatives that are given here by hand are as fine as they can be."""
+    monkeypatch.setattr(parameter_evidence, "finely", lambda fit: fit)
+
+
 def effect(slug, parameters=1, richer=None, acts_on="body"):
     description = SimpleNamespace(acts_on=acts_on, parameters=())
     names = ("p",) * parameters
