@@ -24,7 +24,7 @@ from benchmark.discovery.trials.rows import (
     record,
     resting_grid,
 )
-from benchmark.discovery.trials.segments import scatter_of, segments, stages, steadied
+from benchmark.discovery.trials.segments import FITTED, scatter_of, segments, stages, steadied
 from benchmark.discovery.trials.study import ConditionData, Study
 from benchmark.errors import InputError
 from benchmark.files import Camera, Session, Tissue, Trial, stretched_tissue
@@ -37,6 +37,8 @@ MOST_RAW = 4000
 LEAST_IN_PRESS = 50
 """But not below so many between a fifth and four fifths of the peak: a hold of minutes took all rows, and a press of
 0.3 s before it, at 1 kHz, was left with four, over whose bend the mean force is not that of the mean depth."""
+MOVES, RESTS = 0.2, 0.02
+"""Of the largest speed in air, above which a tool moves there, and below which it rests."""
 MOST_IN_ALL, LEAST_IN_TRIAL = 2400, 40
 """Rows of all trials together, and of a trial where there are very many."""
 
@@ -71,7 +73,7 @@ def prepare(session: Session, rows: int) -> Study:
     conditions = tuple(
         _condition(session, group, grid, seen, np.array([order[r.trial.name] for r in group]), rows) for group in kept
     )
-    warnings += _scatter(raw)
+    warnings += [*_scatter(raw), *_guided(raw)]
     interval = float(np.median([np.median(np.diff(r.time)) for r in raw]))
     step = float(np.median([_step(r) for r in raw]))
     return Study(conditions, grid, camera.distance if camera else None, interval, step, tuple(warnings))
@@ -97,6 +99,62 @@ def _scatter(raw: Sequence[RawTrial]) -> list[str]:
         f"the depth of {len(sizes)} of {len(raw)} trials scatters by {1e6 * np.median(sizes):.2g} um from row to row, "
         "which the force does not follow: strokes and rests were smoothed"
     ]
+
+
+def _guided(raw: Sequence[RawTrial]) -> list[str]:
+    """That the force in air goes with the direction of motion, as a guide's friction does, N: told in all trials.
+
+    More than `TOGETHER` standard errors over the trials on the way down and on the way up, of one size within a factor
+    of two, and more than a force is right to anyway.
+    """
+    found = np.array([each for trial in raw if (each := _direction_in_air(trial)) is not None])
+    if len(found) < criteria.LEAST_TRIALS:
+        return []
+    mean, error = found.mean(axis=0), found.std(axis=0, ddof=1) / np.sqrt(len(found))
+    peak = float(np.median([np.ptp(each.force) for each in raw]))
+    if (
+        np.any(mean <= np.maximum(criteria.TOGETHER * error, criteria.LEAST_FORCE * peak))
+        or mean.max() > 2 * mean.min()
+    ):
+        return []
+    return [
+        f"before the touch and after lift-off, in air, the force is {mean.mean():.2g} N (give or take "
+        f"{error.mean():.1g}) higher while the tool moves down and as much lower while it moves up: the bench's own "
+        "friction, of a guide, not the tissue's. It is in all forces and was not taken off: it may be what stands as a "
+        "dry friction, or as outside the catalogue"
+    ]
+
+
+def _direction_in_air(raw: RawTrial) -> tuple[float, float] | None:
+    """By how much the force is higher as a tool moves down in air, and lower as it moves up, N; None where unseen.
+
+    Beside a level and a drift: each way against the rest beside it, or, without these rests, both ways against each
+    other. The near half of the way up is left out, in which a surface may hold the tool.
+    """
+    ahead, back = (np.clip(np.arange(raw.time.size) + way, 0, raw.time.size - 1) for way in (2, -2))
+    speed = (raw.depth[ahead] - raw.depth[back]) / (raw.time[ahead] - raw.time[back])
+    air = raw.depth < -criteria.EARLY_TOUCH * raw.depth.max()
+    if not air.any():
+        return None
+    fast = np.abs(speed) / max(float(np.abs(speed[air]).max()), 1e-300)
+    air &= ((fast > MOVES) | (fast < RESTS)) & ~((speed < 0.0) & (fast > MOVES) & (raw.depth > 0.5 * raw.depth.min()))
+    way = np.where(fast > MOVES, np.sign(speed), 0.0)
+    pressed = np.flatnonzero(raw.depth >= 0.0)
+    place = np.arange(raw.time.size)
+    before, after = air & (place < pressed[0]) & (way >= 0.0), air & (place > pressed[-1]) & (way <= 0.0)
+    sides = [(before, 1.0), (after, -1.0)]
+    if all(min((side & (way == sign)).sum(), (side & (way == 0.0)).sum()) >= FITTED for side, sign in sides):
+        return _along(raw, before, way), _along(raw, after, way)
+    if min((air & (way == sign)).sum() for sign in (1.0, -1.0)) < FITTED:
+        return None
+    both = _along(raw, air, way)
+    return both, both
+
+
+def _along(raw: RawTrial, rows: NDArray[np.bool_], way: Array) -> float:
+    """Force over direction (n,) in some rows, N, beside a level and a drift."""
+    columns = np.column_stack([np.ones(int(rows.sum())), raw.time[rows] - raw.time[rows].mean(), way[rows]])
+    return float(np.linalg.lstsq(columns, raw.force[rows], rcond=None)[0][2])
 
 
 def _step(raw: RawTrial) -> float:

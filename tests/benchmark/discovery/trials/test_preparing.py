@@ -134,6 +134,28 @@ def test_a_depth_whose_sensor_scatters_is_prepared_steady(tmp_path, quick_sessio
     assert re.match(r"the depth of 4 of 4 trials scatters by (19|20|21) um from row to row", said)
 
 
+def guide(size):
+    """A guide's friction, N, beside the elastic force."""
+    return lambda time, depth, elastic: elastic + size * np.sign(np.round(np.gradient(depth, time), 6))
+
+
+def drift(time, depth, elastic):
+    return elastic + 0.01 * time
+
+
+def pull(time, depth, elastic):
+    """A surface that holds the tool for 0.2 of the 0.5 mm of its way up."""
+    gone = (np.maximum.accumulate(depth) > 0.0) & (depth < 0.0) & (depth > -0.2e-3) & (np.gradient(depth) < 0.0)
+    return elastic - 0.1 * gone
+
+
+@pytest.mark.parametrize(("force", "said"), [(guide(0.05), True), (guide(0.0), False), (drift, False), (pull, False)])
+def test_a_force_in_air_that_goes_with_the_direction_is_the_benchs_own(session_of, force, said):
+    study = prepare(session_of(force=force, trials=5, speeds=(0.6e-3,), noise=0.002, seed=4), 100)
+    found = [float(size) for text in study.warnings for size in re.findall(r"in air, the force is ([0-9.]+) N", text)]
+    assert found == (pytest.approx([0.05], rel=0.15) if said else [])
+
+
 def filmed(session):
     """A camera, and four markers in all trials that move by 0.1 mm."""
     frames = np.repeat([0.0, 0.5, 1.0], 4)
