@@ -37,8 +37,8 @@ MOST_RAW = 4000
 LEAST_IN_PRESS = 50
 """But not below so many between a fifth and four fifths of the peak: a hold of minutes took all rows, and a press of
 0.3 s before it, at 1 kHz, was left with four, over whose bend the mean force is not that of the mean depth."""
-MOVES, RESTS = 0.2, 0.02
-"""Of the largest speed in air, above which a tool moves there, and below which it rests."""
+MOVES, RESTS = 0.7, 0.02
+"""Of the largest speed in air on that way, above which a tool moves there, and below which it rests."""
 MOST_IN_ALL, LEAST_IN_TRIAL = 2400, 40
 """Rows of all trials together, and of a trial where there are very many."""
 
@@ -136,7 +136,8 @@ def _direction_in_air(raw: RawTrial) -> tuple[float, float] | None:
     air = raw.depth < -criteria.EARLY_TOUCH * raw.depth.max()
     if not air.any():
         return None
-    fast = np.abs(speed) / max(float(np.abs(speed[air]).max()), 1e-300)
+    most = [float(np.clip(sign * speed[air], 1e-300, None).max()) for sign in (1.0, -1.0)]
+    fast = np.abs(speed) / np.where(speed > 0.0, *most)
     air &= ((fast > MOVES) | (fast < RESTS)) & ~((speed < 0.0) & (fast > MOVES) & (raw.depth > 0.5 * raw.depth.min()))
     way = np.where(fast > MOVES, np.sign(speed), 0.0)
     pressed = np.flatnonzero(raw.depth >= 0.0)
