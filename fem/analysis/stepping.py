@@ -314,8 +314,7 @@ class Stepper:
 
     def _solve(self, value: float, time: float) -> tuple[NewtonResult, System]:
         """Newton's result at a load value and a time, and the equations that fit it."""
-        lost = self._problem.system.lets_go(value) if self._control == "force" else ""
-        if lost:
+        if self._control == "force" and (lost := self._problem.system.lets_go(value)):
             return NewtonResult(self._state, 0, lost), self._problem.system
         iterations = 0
         for guess, begun in self._beginnings(value, time):
@@ -325,6 +324,9 @@ class Stepper:
                 result = self._followed(result, guess, value, system)
             if result.success:
                 break
+        if not iterations and begun.touches_by_point:  # all predictions turn an element inside out: from the last
+            result, system = self._settle(self._state, value, begun, self._control)
+            iterations = result.iterations
         return replace(result, iterations=iterations), system
 
     def _followed(self, result: NewtonResult, guess: State, value: float, system: System) -> NewtonResult:

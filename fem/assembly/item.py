@@ -103,6 +103,11 @@ class EquationItem(ABC):
         """Whether limits are guessed and corrected, round after round, until they fit the pressure."""
         return False
 
+    @property
+    def touches_by_point(self) -> bool:
+        """Whether it begins at a point, round which predictions easily turn an element inside out."""
+        return False
+
     def corrected(self, y: FloatArray, press: float) -> Self | None:
         """The item that fits a state in equilibrium at y (n,) under a press in N; None if this one does."""
         del y, press

@@ -77,6 +77,11 @@ class System:
         """Whether an item has limits that are guessed; see :class:`fem.assembly.item.EquationItem`."""
         return any(item.follows_pressure for item in self.items)
 
+    @property
+    def touches_by_point(self) -> bool:
+        """Whether an item begins at a point; see :class:`fem.assembly.item.EquationItem`."""
+        return any(item.touches_by_point for item in self.items)
+
     def element_displacement(self, y: FloatArray) -> FloatArray:
         """Nodal displacements of each element (k, E) in m at the unknowns y (n,)."""
         u = self.scatter.gather(y)

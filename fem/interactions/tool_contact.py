@@ -228,6 +228,11 @@ class ToolContact(EquationItem):
         """Coulomb's limits do."""
         return self.punch.friction > 0.0
 
+    @property
+    def touches_by_point(self) -> bool:
+        """A sphere does."""
+        return self.punch.face <= 0.0
+
     def corrected(self, y: FloatArray, press: float) -> ToolContact | None:
         """The contact that fits a state with a press in N, where this one does not; None where it does.
 

@@ -97,6 +97,18 @@ def test_a_sphere_meets_a_half_space_that_hardly_changes_its_volume_on_the_fine_
     assert forces["fine"] == pytest.approx(forces["default"], rel=2e-3)
 
 
+@pytest.mark.parametrize(("height", "deepest"), [(30e-3, 0.375e-3), (60e-3, 0.38e-3)])
+def test_a_sphere_goes_on_where_every_prediction_turns_an_element_inside_out(height, deepest):
+    """States with and without the middle in touch follow each other, and it stopped at 0.027 mm between two of them."""
+    gel, tool = fem.Layer("gel", height, 1000.0, fem.NeoHookean(40e3, 0.45)), fem.Tool(3e-3, "rigid_frictionless", 3e-3)
+    model = fem.prepare(fem.Problem((gel,), tool, fem.Support("bonded"))).within_limits
+    steps = np.arange(1.0, 5.0)
+    pressed = model.run(fem.Load("depth", steps, deepest * steps / 24.0))
+    assert pressed.complete
+    hertz = 4.0 / 3.0 * 40e3 / (1.0 - 0.45**2) * np.sqrt(3e-3) * pressed.depth**1.5
+    np.testing.assert_allclose(pressed.force, hertz, rtol=0.02)
+
+
 def gel_with_friction():
     gel = (fem.Layer("gel", 6e-3, 1000.0, fem.NeoHookean(50e3, 0.48)),)
     tool = fem.Tool(5e-3, "rigid_frictional", 1e-3, friction_coefficient=0.3)
