@@ -17,7 +17,13 @@ from benchmark.files.schema import validated
 from benchmark.files.sessions.fit_table import FitTable
 from benchmark.files.sessions.session_folder import SESSION_FILE
 from benchmark.files.sources import Source, read_toml
-from benchmark.identification.parameters.free_parameters import COMMON, EDGE_RADIUS, MODULUS, parameters_of
+from benchmark.identification.parameters.free_parameters import (
+    COMMON,
+    EDGE_RADIUS,
+    MODULUS,
+    parameters_of,
+    refuse_without_effect,
+)
 from benchmark.identification.parameters.identifiability import directions
 from benchmark.identification.parameters.identified import Identified, identify
 from benchmark.identification.parameters.law_selection import scores, simplest
@@ -118,6 +124,7 @@ class ParameterWish:
         if self.posterior:
             load_emcee()
         for key in (key for key in table.free if key != EDGE_RADIUS):
+            refuse_without_effect(key, setup)
             for law in self.laws or (table.law,):
                 parameters_of(key, setup, law)
         file = session.folder / SESSION_FILE if self.file is None else self.file

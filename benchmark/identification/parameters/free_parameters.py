@@ -168,6 +168,22 @@ def parameters_of(key: str, setup: Setup, law: str | None) -> tuple[Parameter, .
     return (Parameter(key, value, value / FAR, value * FAR),)
 
 
+def refuse_without_effect(key: str, setup: Setup) -> None:
+    """Refuse a key of `--free` that changes no force of a press of this set-up; raises InputError that says why."""
+    tissue, _, support = setup
+    last = tissue.layers[-1].name
+    endless = (f"{last}.{THICKNESS}", *((THICKNESS,) if len(tissue.layers) == 1 else ()))
+    why = ""
+    if key in {f"{name}.density" for name in tissue.layer_names}:
+        why = "presses are quasi-static, without inertia"
+    elif support.kind == "half_space" and key in endless:
+        why = f"the last layer of a half_space, {last}, is endless"
+    elif support.cylinder and key == RADIUS:
+        why = "a plate covers the cylinder's face"
+    if why:
+        raise InputError(f"--free {key}: no force depends on it, so that no trial tells it ({why}); leave it out")
+
+
 def _relaxation(key: str, tissue: Tissue) -> tuple[Parameter, ...]:
     layers = tissue.layers
     if key != RELAXATION:

@@ -8,6 +8,7 @@ from benchmark.files import Support, Tool, load_tissue
 from benchmark.files.sessions.fit_table import Law
 from benchmark.identification.parameters.free_parameters import (
     parameters_of,
+    refuse_without_effect,
     value_of,
     with_values,
 )
@@ -93,3 +94,18 @@ def test_what_is_no_positive_number_is_refused_with_what_is_allowed(key) -> None
 
 def test_a_session_may_ask_for_every_law() -> None:
     assert get_args(Law) == tuple(LAW_SHAPES)
+
+
+@pytest.mark.parametrize(
+    ("key", "support", "why"),
+    [
+        ("dermis.density", Support(), "quasi-static"),
+        ("subcutaneous_fat.thickness", Support(kind="half_space"), "endless"),
+        ("tool.radius", Support(kind="plates", specimen_radius=5e-3), "covers"),
+    ],
+)
+def test_what_no_force_depends_on_is_refused(key, support, why) -> None:
+    setup = (*SETUP[:2], support)
+    with pytest.raises(InputError, match=f"--free {key}: no force depends on it.*{why}"):
+        refuse_without_effect(key, setup)
+    refuse_without_effect("dermis.thickness", setup)
