@@ -105,6 +105,10 @@ class Parameter:
         """The number of the border's unit for 1 in SI."""
         return shown(1.0, dimension_of_key(self.key).si)[0]
 
+    def shown(self, value: float) -> str:
+        """A value (SI) with the border's unit."""
+        return f"{self.scale * value:.4g} {self.unit}".strip()
+
     @property
     def fading(self) -> bool:
         """Whether it belongs to the relaxation, and not to the elastic answer."""

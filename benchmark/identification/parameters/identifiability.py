@@ -20,6 +20,7 @@ import numpy as np
 from scipy.stats import t as student
 
 from benchmark.identification.model_error import COUNT, PLAIN, functions
+from benchmark.identification.parameters.free_parameters import Parameter
 from benchmark.identification.parameters.layer_fit import LayerFit
 from benchmark.identification.parameters.layer_model import GAIN, MM, LayerModel
 from benchmark.identification.parameters.mixed_effects import courses_left
@@ -242,13 +243,21 @@ def held_off(found: LayerFit, names: Sequence[str]) -> tuple[tuple[str, ...], st
     """
     gain, places = shared_gain(found.fit.nuisance[:, GAIN]), zip(names, found.problem.free, strict=True)
     parameters = [(name, found.problem.parameters[k], float(found.vector[k])) for name, k in places]
-    held = tuple(name for name, one, at in parameters if one.prior is not None or one.at_end(at))
+    held = {name: by for name, one, at in parameters if (by := _held_by(one, at))}
     if gain is None or not held:
         return (), ""
-    return held, (
-        f"the forces of all trials are {math.exp(gain):.3g} times the model's, beyond their scatter: the prior or the "
-        f"bounds ([fit.priors], [fit.bounds]) of {', '.join(held)} do not let it follow them"
+    return tuple(held), (
+        f"the forces of all trials are {math.exp(gain):.3g} times the model's, beyond their scatter, and it may not "
+        f"follow them: {'; '.join(f'{name} is held by {by}' for name, by in held.items())}"
     )
+
+
+def _held_by(parameter: Parameter, at: float) -> str:
+    """What holds a parameter at a coordinate, its bound or else its prior, with the value; "" where nothing does."""
+    if parameter.at_end(at):
+        return f"its bound of {parameter.shown(parameter.value(at))} ([fit.bounds])"
+    prior = parameter.prior
+    return "" if prior is None else f"its prior of {parameter.shown(prior.value)} ([fit.priors])"
 
 
 def shared_gain(gain: Array) -> float | None:

@@ -113,7 +113,8 @@ def test_a_prior_that_the_trials_contradict_does_not_win_in_silence(toy_fit) -> 
     assert contradicted.contradicted == (name,)
     assert not any(one.identifiable for one in contradicted.estimates)
     assert any(
-        "0.5 times the model's, beyond their scatter: the prior or the bounds" in w for w in contradicted.warnings
+        "0.5 times the model's, beyond their scatter" in w and f"{name} is held by its prior of 80 kPa" in w
+        for w in contradicted.warnings
     )
     for gains in (half - half.mean(), 0.5 * np.tile([1.0, -0.8], 5)):
         assert held(told, prior=prior, gains=gains).contradicted == ()
@@ -123,7 +124,9 @@ def test_a_prior_that_the_trials_contradict_does_not_win_in_silence(toy_fit) -> 
 def test_a_value_at_its_bound_is_called_so(toy_fit) -> None:
     told = held(answer(toy_fit()), at_bound=True)
     assert "it stands at the end of what it may be (" in told._reason(0, 0.1)
-    assert held(answer(toy_fit()), at_bound=True, gains=np.full(10, -0.4)).contradicted == (told.names[0],)
+    both = held(answer(toy_fit()), prior=Prior(80e3, 0.02, "a paper"), at_bound=True, gains=np.full(10, -0.4))
+    assert both.contradicted == (told.names[0],)
+    assert any(f"{told.names[0]} is held by its bound of " in each for each in both.warnings)
 
 
 @pytest.mark.parametrize(
