@@ -172,32 +172,40 @@ def fit_trial(trial: TrialData) -> TrialFit:
     FittingError
         The force curve ends too early for the trial.
     """
-    fitted, allowed, notes = prepare_rows(trial)
+    averaged = _averaged(trial)
+    fitted, allowed, notes = prepare_rows(trial, averaged)
     start = find_start(fitted, allowed)
     if start.stiffness <= 0.0 or not start.evidence >= LEAST_EVIDENCE:
         raise NoContactError(_no_contact(trial, start))
-    hold = largest_decay(reduced(trial, MOST_ROWS))
+    hold = largest_decay(averaged)
     contact = _contact_from_loading(fitted, allowed) if hold is not None and hold.seen else None
     if contact is None:
         contact = whole = minimise(fitted, allowed, start)
     else:
         whole = minimise(fitted, allowed, contact.start, contact_fixed=True)
         notes.append("the force falls in a hold: onset and zero come from the rows up to the largest force")
-    return _result(trial, fitted.rows, allowed, hold, contact, whole, notes)
+    return _result(trial, averaged, fitted.rows, allowed, hold, contact, whole, notes)
 
 
-def prepare_rows(trial: TrialData) -> tuple[TrialData, ContactRange, list[str]]:
+def _averaged(trial: TrialData) -> TrialData:
+    """The trial in at most `MOST_ROWS` rows; raises NoContactError where its depth does not change."""
+    if travel(trial.depth) < LEAST_TRAVEL:
+        raise NoContactError(f"{trial.label}: the depth changes by less than {1e3 * LEAST_TRAVEL:g} mm: no motion")
+    return reduced(trial, MOST_ROWS)
+
+
+def prepare_rows(trial: TrialData, averaged: TrialData | None = None) -> tuple[TrialData, ContactRange, list[str]]:
     """Return the rows to fit, the range of the onset, and what was left out or averaged.
+
+    `averaged` is the trial in at most `MOST_ROWS` rows, where that is there already.
 
     Raises
     ------
     NoContactError, FittingError
         As `fit_trial`.
     """
-    if travel(trial.depth) < LEAST_TRAVEL:
-        raise NoContactError(f"{trial.label}: the depth changes by less than {1e3 * LEAST_TRAVEL:g} mm: no motion")
     notes = []
-    fitted = reduced(trial, MOST_ROWS)
+    fitted = _averaged(trial) if averaged is None else averaged
     if fitted.rows < trial.rows:
         notes.append(f"{trial.rows} rows averaged in groups to {fitted.rows} for the fit")
     allowed = contact_range(fitted.depth, fitted.force)
@@ -234,6 +242,7 @@ def _contact_from_loading(trial: TrialData, allowed: ContactRange) -> LawFit | N
 
 def _result(
     trial: TrialData,
+    averaged: TrialData,
     rows_fitted: int,
     allowed: ContactRange,
     hold: Hold | None,
@@ -256,7 +265,7 @@ def _result(
         onset=whole.onset,
         onset_stderr=contact.onset_stderr,
         onset_range=(allowed.low, allowed.high),
-        peak=float(reduced(trial, MOST_ROWS).force.max()) - whole.zero,
+        peak=float(averaged.force.max()) - whole.zero,
         residual_rms=float(np.sqrt(np.mean(residual**2))),
         residual_max=float(np.abs(residual).max()),
         lag_one=whole.lag_one,
@@ -267,7 +276,7 @@ def _result(
         notes=tuple(notes),
         row_noise=whole.row_noise,
         of_curve=(max(whole.of_curve[0], contact.of_curve[0]), *contact.of_curve[1:]),
-        creep_percent=largest_creep(reduced(trial, MOST_ROWS)),
+        creep_percent=largest_creep(averaged),
     )
     if found.onset_at_bound:
         return replace(found, notes=(*notes, "the contact onset is at an end of the range the data allow"))

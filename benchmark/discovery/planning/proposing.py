@@ -295,6 +295,8 @@ def _tools(
 
 def _bearable(rival: Rival, condition: ConditionData, experiment: Experiment, most_force: float) -> float | None:
     """Depth, m, at which a rival expects as much force as may be proposed; None where the experiment stays below it."""
+    if math.isinf(most_force):
+        return None
     time, depth = motion(experiment, ROWS)
     try:
         force = expected(rival, condition.name, time, depth).signals[:, 0]

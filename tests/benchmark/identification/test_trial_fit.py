@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from benchmark.identification import FittingError, NoContactError, TrialData, fit_trial
+from benchmark.identification import FittingError, NoContactError, TrialData, fit_trial, trial_fit
 from benchmark.response import ForceCurve
 
 
@@ -165,3 +165,12 @@ def test_scaling_the_force_scales_the_stiffness(size, shift, seed):
     assert other.stiffness == pytest.approx(size * one.stiffness, rel=1e-4)
     assert other.zero == pytest.approx(size * (one.zero + shift), abs=1e-4 * size)
     assert other.onset == pytest.approx(one.onset, abs=1e-7)
+
+
+def test_a_long_trial_is_averaged_once(trial, monkeypatch):
+    made, calls, average = trial(noise=0.01, seed=3), [], trial_fit.reduced
+    rows = np.arange(0.0, made.rows - 1, made.rows / 4100)
+    time, depth, force = (np.interp(rows, np.arange(made.rows), each) for each in (made.time, made.depth, made.force))
+    monkeypatch.setattr(trial_fit, "reduced", lambda *given: calls.append(given) or average(*given))
+    assert fit_trial(replace(made, time=time, depth=depth, force=force)).rows_fitted <= 2000
+    assert len(calls) == 1

@@ -219,6 +219,8 @@ def test_a_tool_that_would_press_too_hard_is_pressed_less_deep(monkeypatch) -> N
     assert 0.0 < motion(less, 400)[1].max() <= 1e-3
     assert "since deeper would be too hard" in less.words
     assert "hold for 12.8 s" in less.words
+    monkeypatch.setattr(proposing, "expected", None)  # without a limit nothing is evaluated
+    assert _bearable(_rival("slip"), condition, wider, math.inf) is None
 
 
 def test_the_tools_of_the_menu_are_pressed_no_harder_than_the_bench_bears(monkeypatch) -> None:
