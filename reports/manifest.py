@@ -102,6 +102,12 @@ def changed_files(folder: Path) -> list[str]:
     return [name for name in foreign_files(folder) if name in manifest.files]
 
 
+def said_of_changes(folder: Path) -> str:
+    """Which files of a result of ours, its page apart, are not as they were written; empty where all are."""
+    found = [name for name in changed_files(folder) if name != PAGE]
+    return f"{folder}: not as they were written: {', '.join(found)}; what follows is of the changed files" * bool(found)
+
+
 def refuse_foreign(folder: Path, shown: object = None, names: Collection[str] | None = None) -> None:
     """Raise ForeignFilesError where something in `folder`, in messages `shown`, is not ours.
 

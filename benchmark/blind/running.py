@@ -24,6 +24,7 @@ from benchmark.errors import InputError
 from benchmark.files.sessions.trials import Session
 from benchmark.resumable import Journal, read_rows
 from benchmark.sweeps.cluster import on_cluster
+from reports.formatting import counted
 
 PRODUCT = "benchmark.discovery:discover"
 OnCase = Callable[[int, int, Judged | None], None]
@@ -106,6 +107,7 @@ def run_cases(
     workers: int | str,
     on_case: OnCase,
     experiments: int = 0,
+    say: Callable[[str], None] = lambda _: None,
 ) -> tuple[Judged, ...]:
     """Run the cases that the journal does not have yet.
 
@@ -122,14 +124,19 @@ def run_cases(
         Told how many of how many are finished, and the last one.
     experiments : int
         As `run_case` takes it.
+    say : callable
+        Told, once, how many rows of the journal were changed since they were written, which are computed again.
 
     Returns
     -------
     tuple of Judged
         In the order of `cases`.
     """
-    finished = {row.case: row for row in read_rows(journal, Judged)}
+    changed: list[str] = []
+    finished = {row.case: row for row in read_rows(journal, Judged, changed.append)}
     waiting = [name for name in cases if name.text not in finished]
+    if changed and waiting:
+        say(f"warning: {journal}: {counted(len(changed), 'row')} changed since written; what it held is computed again")
     on_case(len(cases) - len(waiting), len(cases), None)
     with closing(Journal(journal)) as kept:
         for row in _work([Job(name, discoverer, experiments) for name in waiting], workers):

@@ -101,7 +101,7 @@ def blind(
             advance("cases", done, total, remark)
 
         with going_on(folder):
-            judged = run_cases(names, discoverer, journal, scheduler or workers, on_case, experiments)
+            judged = run_cases(names, discoverer, journal, scheduler or workers, on_case, experiments, console.say)
             result = finish(folder, settings, judged)
     if json:
         print_json({**result, "out": str(folder)})

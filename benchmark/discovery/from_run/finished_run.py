@@ -19,6 +19,7 @@ from benchmark.files import Scenario, load_scenario
 from benchmark.models import Drive, UncoveredError, read_reference
 from benchmark.models.model_result import STRAINS
 from benchmark.models.prepare import in_small_strain, small_strain_deflection
+from reports.manifest import said_of_changes
 
 Array = NDArray[np.float64]
 TABLE = Path("tables") / "max_deformation.csv"
@@ -45,6 +46,8 @@ class FinishedRun:
         Its elastic law: "linear" or "corrected".
     restarted : bool
         Whether `wave` was computed anew, in small strain.
+    changed : str
+        That files of the run are not as they were written, by name; empty where all are.
     """
 
     name: str
@@ -57,6 +60,7 @@ class FinishedRun:
     effects: tuple[str, ...]
     large_press: str
     restarted: bool = False
+    changed: str = ""
 
     @property
     def layers(self) -> tuple[str, ...]:
@@ -101,6 +105,7 @@ def read_run(folder: Path) -> FinishedRun:
         fingerprint=digest,
         effects=tuple(document.get("effects", ())),
         large_press=_large_press(scenario, document),
+        changed=said_of_changes(folder),
     )
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -61,6 +62,8 @@ def repair_run(
         [effect for effect in effects if effect.body is not None and not effect.needs_markers], fitted, listener
     )
     answer = _Answer(fitted, judged, fits)
+    found = answer.discovery(time.perf_counter() - began)
+    changed = tuple(one.changed for one in (run, other) if one is not None and one.changed)
     return DiscoveryRecord(
         name=run.name,
         source="run",
@@ -68,7 +71,7 @@ def repair_run(
         synthetic=True,
         tissue=run.scenario.tissue.name,
         model="wave",
-        found=answer.discovery(time.perf_counter() - began),
+        found=replace(found, warnings=(*changed, *found.warnings)),
         cards={effect.slug: effect.description for effect in effects},
         seed=seed,
         layers=answer.layers,

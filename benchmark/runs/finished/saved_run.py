@@ -21,7 +21,7 @@ from benchmark.runs.record import RunRecord, compare_layers
 from benchmark.runs.report.run_page import CONDITIONS, REFINEMENT, VALIDATION
 from benchmark.runs.report.trials_section import TrialsPart
 from benchmark.side_by_side import NAMES, ModelRun, Seconds, SideBySide, speedup
-from reports.manifest import PAGE, changed_files
+from reports.manifest import said_of_changes
 
 STOPPED = re.compile(
     r"step (?P<step>\d+) at (?P<time>\S+) s: the load (?P<target>\S+) (?P<unit>\S+) could not be reached, "
@@ -72,7 +72,7 @@ def read_run(folder: Path) -> SavedRun:
     """
     document, environment = (_document(folder, name) for name in ("results.json", "environment.json"))
     scenario = load_scenario(folder / "scenario.toml")
-    tables, changed = SavedTables(folder), _changed(folder)
+    tables, changed = SavedTables(folder), said_of_changes(folder)
     try:
         document |= {"warnings": [*document["warnings"], *filter(None, [changed])]}
         record = _record(scenario, document, tables, int(environment["seed"]))
@@ -84,12 +84,6 @@ def read_run(folder: Path) -> SavedRun:
         ) from None
     columns = {name: tables.read(name).plain() for name in (VALIDATION, CONDITIONS, REFINEMENT) if tables.has(name)}
     return SavedRun(folder, record, document, environment, tables.texts(), trials, columns, changed)
-
-
-def _changed(folder: Path) -> str:
-    """Which files of a run, its page apart, are not as they were written; empty where all are."""
-    found = [name for name in changed_files(folder) if name != PAGE]
-    return f"{folder}: not as they were written: {', '.join(found)}; what follows is of the changed files" * bool(found)
 
 
 def _document(folder: Path, name: str) -> dict[str, Any]:

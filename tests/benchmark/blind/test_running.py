@@ -97,6 +97,12 @@ def test_the_verb_counts_resumes_and_redoes(stub: Path, tmp_path: Path, capsys: 
     assert len(stub.read_text().splitlines()) == 4
     assert both[0] == first[0]
     assert [news[0] for news in told] == [1, 2]
+
+    journal.write_text(journal.read_text().replace('"said": "adhesion"', '"said": "none"', 1))
+    said: list[str] = []
+    both = run_cases(names, "stub_for_blind:always", journal, 1, lambda *_: None, say=said.append)
+    assert len(said) == 1
+    assert "1 row changed since written" in said[0]
     assert {case.truth: case.said for case in both} == {"adhesion": "adhesion", "camera_latency": "adhesion"}
 
 

@@ -1,3 +1,4 @@
+import json
 import math
 
 import pytest
@@ -5,6 +6,7 @@ import pytest
 from benchmark.cli.console import Console
 from benchmark.discovery.from_run import read_run, repair_run
 from benchmark.physics import catalogue
+from reports.manifest import MANIFEST, manifest_of
 
 QUIET = Console(quiet=True)
 ELASTIC = tuple(e for e in catalogue() if e.slug in ("strain_stiffening", "pretension", "bottoming_out", "anisotropy"))
@@ -67,3 +69,12 @@ def test_a_second_run_is_held_out(make_run) -> None:
     assert record.found.gap[0].closed == pytest.approx(1.0, abs=0.01)
     assert [trace.held_out for trace in record.found.traces] == [False, True]
     assert record.found.conditions == ("small", "large")
+
+
+def test_a_run_whose_files_were_changed_is_told_of(make_run) -> None:
+    folder = make_run()
+    (folder / MANIFEST).write_text(json.dumps(manifest_of(folder)))
+    assert not any("not as they were written" in each for each in _repaired(folder).found.warnings)
+    results = folder / "results.json"
+    results.write_text(results.read_text() + " ")
+    assert "not as they were written: results.json" in _repaired(folder).found.warnings[0]
