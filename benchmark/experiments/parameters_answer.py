@@ -49,6 +49,8 @@ class ParametersAnswer:
             said.append(f"the trials do not tell these laws apart on what was held out: {self.tied}")
         if self.posterior is not None and not self.posterior.converged:
             said.append(f"the posterior's chains did not mix (R-hat {self.posterior.r_hat.max():.3g}): do not quote it")
+        if self.posterior is not None and self.posterior.short:
+            said.append(self.posterior.short)
         return tuple(said)
 
     def to_dict(self) -> dict[str, Any]:

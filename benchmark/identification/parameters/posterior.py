@@ -34,6 +34,8 @@ SCATTER_SPREAD = 0.3
 """Of the walkers' starts, in its logarithm."""
 CONVERGED = 1.05
 """R-hat up to which chains count as mixed."""
+LEAST_TIMES = 50.0
+"""Autocorrelation times that a chain has at least, for its time to be trusted (emcee's own rule)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +50,8 @@ class Posterior:
         Ends of the central 95 %.
     r_hat, effective : (f,) array
         Split R-hat, and effective sample size.
+    times : (f,) array or None
+        Integrated autocorrelation times, steps; None where they were not estimated.
     """
 
     chains: Array
@@ -55,6 +59,18 @@ class Posterior:
     high: Array
     r_hat: Array
     effective: Array
+    times: Array | None = None
+
+    @property
+    def short(self) -> str:
+        """That the chains are short beside their autocorrelation time; empty where they are not."""
+        steps, longest = len(self.chains), 0.0 if self.times is None else float(self.times.max())
+        if not LEAST_TIMES * longest > steps:
+            return ""
+        return (
+            f"the posterior's chains of {steps} steps are shorter than {LEAST_TIMES:g} times their autocorrelation "
+            f"time of {longest:.0f} steps: its intervals and effective samples are rough"
+        )
 
     @property
     def draws(self) -> Array:
@@ -109,10 +125,10 @@ def posterior(found: LayerFit, seed: int) -> Posterior:
     sampler.run_mcmc(start, STEPS)
     free = list(found.problem.free)
     chains = sampler.get_chain(discard=BURNT)[:, :, free]
-    times = sampler.get_autocorr_time(discard=BURNT, quiet=True)[free]
+    times = sampler.get_autocorr_time(discard=BURNT, quiet=True, tol=0)[free]  # `Posterior.short` says it
     ends = np.quantile(chains.reshape(-1, len(free)), [0.025, 0.975], axis=0)
     count = chains.shape[0] * chains.shape[1]
-    return Posterior(chains, ends[0], ends[1], split_r_hat(chains), count / np.maximum(times, 1.0))
+    return Posterior(chains, ends[0], ends[1], split_r_hat(chains), count / np.maximum(times, 1.0), times)
 
 
 def load_emcee() -> ModuleType:

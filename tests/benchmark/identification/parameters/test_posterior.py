@@ -1,7 +1,12 @@
+import logging
+import warnings
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from benchmark.identification.parameters.posterior import _Density, posterior, split_r_hat
+from benchmark.experiments.parameters_answer import ParametersAnswer
+from benchmark.identification.parameters.posterior import Posterior, _Density, posterior, split_r_hat
 
 
 def test_r_hat_tells_chains_that_mixed_from_chains_that_did_not() -> None:
@@ -33,6 +38,25 @@ def test_the_scatter_is_as_likely_as_the_gains_say(toy_fit) -> None:
     at = [np.append(found.vector[:3], np.log(scatter)) for scatter in (0.01, 0.02)]
     want = -0.5 * np.sum(gains**2) * (0.02**-2 - 0.01**-2) - (gains.size - 1) * np.log(2.0)
     assert density(at[1]) - density(at[0]) == pytest.approx(want, rel=0.1)
+
+
+def test_short_chains_are_told_of_once_in_our_words() -> None:
+    chains, one = np.zeros((2400, 4, 2)), np.ones(2)
+    drawn = Posterior(chains, one, one, one, one, np.array([20.0, 61.0]))
+    answer = ParametersAnswer(SimpleNamespace(warnings=()), posterior=drawn)
+    assert [each for each in answer.warnings if "2400 steps are shorter than 50 times" in each] == list(answer.warnings)
+    assert "autocorrelation time of 61 steps" in drawn.short
+    assert Posterior(chains, one, one, one, one, np.array([20.0, 48.0])).short == ""
+
+
+def test_the_sampler_says_nothing_of_its_own(toy_fit, monkeypatch, caplog) -> None:
+    pytest.importorskip("emcee", reason="emcee is optional: pip install tissuebench[posterior]")
+    monkeypatch.setattr("benchmark.identification.parameters.posterior.STEPS", 700)
+    with warnings.catch_warnings(), caplog.at_level(logging.WARNING):
+        warnings.simplefilter("error")
+        drawn = posterior(toy_fit(), 1)
+    assert drawn.short
+    assert not caplog.records
 
 
 @pytest.mark.slow
