@@ -1,4 +1,4 @@
-"""Remarks on the numbers of single trials: glitches, a sensor's end, turned signs, times that may be milliseconds."""
+"""Remarks on the numbers of single trials and of their markers: a glitch, a sensor's end, signs, units and origins."""
 
 from __future__ import annotations
 
@@ -6,8 +6,11 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
-from bench_hw.tables import TrialTable, calm
+from bench_hw.tables import MarkerTable, TrialTable, calm
+from benchmark.errors import InputError
+from benchmark.files.sessions.description import Camera
 
 STANDS: Final = 0.1
 """Share of the travel over which a force that does not change by one digit is no tissue's."""
@@ -50,8 +53,7 @@ def _turned(trials: Sequence[tuple[str, TrialTable]]) -> str:
     name, table = trials[0]
     force, depth = float(table.force.min()), float(table.depth.min())
     others = [each for each, _ in trials[1:]]
-    listed = ", ".join(others[:3]) + (f" and {len(others) - 3} more" if len(others) > 3 else "")
-    too = f" (so do {listed})" if others else ""
+    too = f" (so do {_listed(others)})" if others else ""
     return (
         f"{name}: force and depth only fall, to {force:.4g} N and {1e3 * depth:.4g} mm, as where pressing is "
         f"negative{too}; allowed: press positive. It is used as it is; {EITHER_WAY}"
@@ -75,8 +77,7 @@ def doubtful_times(names: Sequence[str], tables: Sequence[TrialTable]) -> list[s
             found.append(f"{name} ({step:.3g} s from row to row, {lasts:.4g} s in all)")
     if not found:
         return []
-    more = f" and {len(found) - 3} more" if len(found) > 3 else ""
-    return [f"times may be milliseconds where seconds are read: {', '.join(found[:3])}{more}"]
+    return [f"times may be milliseconds where seconds are read: {_listed(found)}"]
 
 
 TWO_KINDS, CLOSER = 1.25, 3.0
@@ -119,3 +120,103 @@ def _standing(table: TrialTable) -> float:
     spans = zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
     way = max(float(np.ptp(table.depth[first:last])) for first, last in spans)
     return way if way > STANDS * float(np.ptp(table.depth)) else 0.0
+
+
+OFF_SPACING: Final = 0.2
+"""Of the spacing told, by which markers at rest may be nearer or farther apart: a poor scale, no other unit."""
+LENGTHS: Final = {"inch": 1.0 / 25.4, "cm": 0.1, "m": 1e-3, "um": 1e3}
+"""Numbers of other units among mm, in mm as they are read, for each mm that they mean."""
+LEAST_PICTURES: Final = 6
+"""Pictures within the trial's time below which a fit has no use for its markers."""
+FAR_LONGER: Final = 100.0
+"""Times the trial's duration that markers by the second or slower last only where they are in milliseconds."""
+MIRRORED: Final = 1.1
+"""Times as well as turned alone that a grid fits mirrored where it is; one row fits both ways."""
+AT_EDGE: Final = 0.9
+"""Of half the grid's size, from its middle, beyond which the origin of its places is no tool's axis."""
+
+
+def check_markers(trial: TrialTable, markers: MarkerTable, camera: Camera) -> None:
+    """Refuse markers in another unit than mm, or at other times than their trial.
+
+    Raises
+    ------
+    InputError
+        Markers at rest (first seen) are not as far from their neighbours as `camera` tells; they last far longer than
+        the trial; or, on one clock, fewer than `LEAST_PICTURES` of more lie within its time.
+    """
+    rest, printed = _at_rest(markers, camera)
+    if len(rest) > 1:
+        apart = float(np.median(_to_next(rest)) / np.median(_to_next(printed))) * camera.marker_spacing
+        if abs((ratio := apart / camera.marker_spacing) - 1.0) > OFF_SPACING:
+            raise InputError(
+                f"{markers.source}: x_mm, y_mm: markers at rest are {1e3 * apart:.4g} mm apart, camera.marker_spacing "
+                f"tells {1e3 * camera.marker_spacing:.4g} mm ({_unit(ratio)}?); allowed: x_mm and y_mm in mm, "
+                f"and marker_spacing as printed, within {100 * OFF_SPACING:.0f} %."
+            )
+    times = np.unique(markers.time)
+    begin, end = float(trial.time[0]), float(trial.time[-1])
+    inside = int(((times >= begin) & (times <= end)).sum())
+    thousandfold = np.ptp(times) > FAR_LONGER * (end - begin) and np.median(np.diff(times)) >= SLOW_ROWS
+    if thousandfold or (camera.clock == "shared" and inside < min(LEAST_PICTURES, len(times))):
+        asked = "milliseconds?" if thousandfold else 'another clock? Then camera.clock = "press" finds it'
+        raise InputError(
+            f"{markers.source}: time_s: markers from {times[0]:.6g} to {times[-1]:.6g} s, the trial from {begin:.6g} "
+            f"to {end:.6g} s: {inside} of {len(times)} pictures lie within it ({asked}); allowed: seconds on the "
+            "trial's clock."
+        )
+
+
+def doubtful_markers(names: Sequence[str], tables: Sequence[MarkerTable], camera: Camera) -> list[str]:
+    """Warnings of grids whose middle is far from the origin of their places, the tool's axis, or that are mirrored."""
+    away, mirrored = {}, []
+    for name, table in zip(names, tables, strict=True):
+        rest, printed = _at_rest(table, camera)
+        low, high = rest.min(axis=0, initial=np.inf), rest.max(axis=0, initial=-np.inf)
+        reach = np.maximum(high - low, camera.marker_spacing)
+        if len(rest) and (np.abs(low + high) > AT_EDGE * reach).any():
+            away[name] = 0.5e3 * (low + high)
+        seen, grid = ((each - each.mean(axis=0)) @ [1.0, 1.0j] for each in (rest, printed))
+        if len(rest) > 2 and abs(np.sum(grid * seen)) > MIRRORED * abs(np.vdot(grid, seen)):
+            mirrored.append(name)
+    said = []
+    if away:
+        x, y = next(iter(away.values()))
+        said.append(
+            f"{_listed(list(away))}: the middle of the markers is at ({x:.3g}, {y:.3g}) mm, so that the origin of x_mm "
+            "and y_mm, which the tool's axis is taken to meet, is at the grid's edge or beyond; allowed: x_mm and y_mm "
+            "from the tool's axis"
+        )
+    if mirrored:
+        said.append(
+            f"{_listed(mirrored)}: the markers' grid is mirrored (x and y exchanged, or one turned?); allowed: "
+            "numbered row by row from 0, x along the rows and y from row to row"
+        )
+    return said
+
+
+def _listed(names: Sequence[str]) -> str:
+    """The first three of many names."""
+    return ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
+
+
+def _unit(ratio: float) -> str:
+    """What may have been taken for mm: the unit that makes the ratio one, else pixels or another spacing."""
+    found = [name for name, each in LENGTHS.items() if abs(ratio / each - 1.0) <= OFF_SPACING]
+    return found[0] if found else "pixels, or another grid"
+
+
+def _at_rest(markers: MarkerTable, camera: Camera) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(k, 2) places, m, of the grid's markers where each was first seen, and where they are on the grid as told."""
+    numbers, first = np.unique(markers.marker, return_index=True)
+    mine = numbers < camera.marker_rows * camera.marker_columns
+    row, column = np.divmod(numbers[mine], camera.marker_columns)
+    rest = np.column_stack([markers.x, markers.y])[first[mine]]
+    return rest, camera.marker_spacing * np.column_stack([column, row]).astype(float)
+
+
+def _to_next(places: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(k,) distances of places (k, 2) to the nearest of the others."""
+    apart = np.hypot(*(places[:, None] - places).T)
+    np.fill_diagonal(apart, np.inf)
+    return np.asarray(apart.min(axis=0))

@@ -26,7 +26,7 @@ from benchmark.files.schema import FileModel, known_keys, validated
 from benchmark.files.sessions.column_labels import check_labels
 from benchmark.files.sessions.depth_counts import even_depths
 from benchmark.files.sessions.description import Camera, SessionFile, assumed_edges, assumptions, base_setup, setups
-from benchmark.files.sessions.doubts import doubtful_forces, doubtful_times
+from benchmark.files.sessions.doubts import check_markers, doubtful_forces, doubtful_markers, doubtful_times
 from benchmark.files.sessions.film_clock import on_trials_clock
 from benchmark.files.sessions.recordings import (
     Recording,
@@ -203,11 +203,15 @@ def _trials(
         condition = setup[each.entry.condition]
         markers = by_entry.get(id(each.entry))
         found = None if markers is None else read_markers(markers)
-        if found is not None and file.camera is not None and file.camera.clock == "press":
-            found, said = on_trials_clock(name, table, found)
-            warnings.append(said)
+        if found is not None and file.camera is not None:
+            check_markers(table, found, file.camera)
+            if file.camera.clock == "press":
+                found, said = on_trials_clock(name, table, found)
+                warnings.append(said)
         trials.append(Trial(name, each.entry.condition, path, condition.tool, condition.support, table, found, markers))
-    return trials, [*warnings, *counts]
+    filmed = {each.name: each.markers for each in trials if each.markers is not None}
+    doubts = [] if file.camera is None else doubtful_markers(list(filmed), list(filmed.values()), file.camera)
+    return trials, [*warnings, *counts, *doubts]
 
 
 def _doubled(read: Sequence[Recording]) -> list[str]:

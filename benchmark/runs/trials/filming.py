@@ -17,6 +17,7 @@ from bench_hw.vision.camera.pinhole import Camera, distance_of
 from bench_hw.vision.displacement.tracks import tracks_of
 from benchmark.errors import InputError
 from benchmark.files import Session, Trial
+from benchmark.files.sessions.doubts import check_markers, doubtful_markers
 from benchmark.files.sessions.film_clock import on_trials_clock
 from benchmark.files.sessions.trials import read_markers
 from benchmark.identification import Film
@@ -175,6 +176,7 @@ def _track(session: Session, trial: Trial, pictures: Path, layout: Layout, liste
     """The tracks of a trial's pictures: kept from an earlier command on the same ones, or made now."""
     camera = _camera_file(session)
     assert camera is not None
+    assert session.camera is not None
     key = film_key(pictures, camera, (layout.rows, layout.columns))
     film = kept_film(key)
     if film is None:
@@ -186,8 +188,10 @@ def _track(session: Session, trial: Trial, pictures: Path, layout: Layout, liste
         table = folder / "markers.csv"
         table.write_bytes(film.table)
         markers = replace(read_markers(table), source=str(pictures))
+    check_markers(trial.table, markers, session.camera)
     tracked = Tracked(trial.name, film.table, film.still, film.frames, film.missing_percent)
-    return markers, tracked, tuple(f"{trial.name}: {text}" for text in film.warnings)
+    said = (f"{trial.name}: {text}" for text in film.warnings)
+    return markers, tracked, (*said, *doubtful_markers([trial.name], [markers], session.camera))
 
 
 def _tracked_now(trial: Trial, pictures: Path, camera: Path, layout: Layout, listener: Listener) -> KeptFilm:

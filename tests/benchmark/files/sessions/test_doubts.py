@@ -3,10 +3,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench_hw.tables import TrialTable, write_trial_csv
+from bench_hw.tables import MarkerTable, TrialTable, write_trial_csv
 from benchmark.errors import InputError
 from benchmark.files import load_session
-from benchmark.files.sessions.doubts import EITHER_WAY, doubtful_forces, doubtful_kinds, doubtful_times
+from benchmark.files.sessions.description import Camera
+from benchmark.files.sessions.doubts import (
+    EITHER_WAY,
+    check_markers,
+    doubtful_forces,
+    doubtful_kinds,
+    doubtful_markers,
+    doubtful_times,
+)
 from tests.benchmark.files.sessions.replicates import replicate
 
 
@@ -114,3 +122,42 @@ def test_trials_that_move_alike_under_two_tools_are_told_of(times, said):
     names = ["a", "b", "c", "d"]
     assert bool(doubtful_kinds(names, tables, ["slow"] * 4)) is said
     assert not doubtful_kinds(names, tables, ["slow", "slow", "wide", "wide"])
+
+
+CAMERA = Camera(marker_rows=3, marker_columns=6, marker_spacing="8 mm")
+
+
+def markers(x=1.0, y=1.0, clock=1.0, at=(0.0, 0.0), pictures=60):
+    """Of a grid of 3 x 6 that is printed 2 % too large, in pictures over the first 4.8 s."""
+    column, row = (each.ravel() for each in np.meshgrid(np.arange(6) - 2.5, np.arange(3) - 1.0))
+    time, number = np.repeat(0.08 * clock * np.arange(pictures), 18), np.tile(np.arange(18), pictures)
+    places = [1e-3 * origin + 8.16e-3 * factor * each for origin, factor, each in ((at[0], x, column), (at[1], y, row))]
+    return MarkerTable(time, number, *(each[number] for each in places), source="a_markers.csv")
+
+
+def test_markers_in_another_unit_or_at_other_times_are_refused_by_file() -> None:
+    """Pixels, inches and milliseconds were fitted, or left out, without a word; discover ended by an IndexError."""
+    check_markers(press(), markers(), CAMERA)
+    wrong = {
+        "at rest are 75.89 mm apart, camera.marker_spacing tells 8 mm (pixels, or another grid?)": (9.3, 1.0),
+        "at rest are 0.3213 mm apart, camera.marker_spacing tells 8 mm (inch?); allowed: x_mm and": (0.03937, 1.0),
+        "(cm?)": (0.1, 1.0),
+        "from 0 to 4720 s, the trial from 0 to 4.78 s: 1 of 60 pictures lie within it (millisec": (1.0, 1000.0),
+    }
+    for said, (scale, clock) in wrong.items():
+        with pytest.raises(InputError, match=r"^a_markers\.csv: ") as refused:
+            check_markers(press(), markers(scale, scale, clock), CAMERA)
+        assert said in str(refused.value)
+    later = markers()
+    later.time[:] += 100.0
+    with pytest.raises(InputError, match=r"0 of 60 pictures lie within it \(another clock\?"):
+        check_markers(press(), later, CAMERA)
+    check_markers(press(), later, CAMERA.model_copy(update={"clock": "press"}))
+    check_markers(press(), markers(pictures=3), CAMERA)
+
+
+def test_markers_of_another_origin_or_a_mirrored_grid_are_told() -> None:
+    tables = [markers(), markers(at=(34.0, 26.0)), markers(y=-1.0), markers(at=(3.0, 3.0)), markers(-1.0, -1.0)]
+    corner, mirrored = doubtful_markers(["as told", "corner", "up", "off centre", "turned"], tables, CAMERA)
+    assert corner.startswith("corner: the middle of the markers is at (34, 26) mm, so that the origin of x_mm and y_mm")
+    assert mirrored.startswith("up: the markers' grid is mirrored")
