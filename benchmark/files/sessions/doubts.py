@@ -16,6 +16,8 @@ STANDS: Final = 0.1
 """Share of the travel over which a force that does not change by one digit is no tissue's."""
 TURNED: Final = 0.2
 """Of the way down that a press with its signs turned goes up at most."""
+STRAIGHT: Final = 0.1
+"""Of the force's range, from its middle, at half the depth, within which a curve is as good as straight."""
 LEVELS: Final = 20
 """Values of the upper half of a force, below which its digits are too coarse to tell that it stands."""
 
@@ -102,6 +104,21 @@ def doubtful_kinds(names: Sequence[str], tables: Sequence[TrialTable], condition
             "tool or specimen? Give them a condition of their own"
         )
     return said
+
+
+def pressed_negative(table: TrialTable) -> bool:
+    """Whether a press surely has both its signs turned: it only falls, and most where the depth is least.
+
+    A record that begins pressed and ends in air falls, too, but its force changes where the depth is largest. Where a
+    straight line tells neither, the force itself does, which is hardly above zero where pressing is negative.
+    """
+    if not _upside_down(table):
+        return False
+    low, span = float(table.depth.min()), float(np.ptp(table.depth))
+    away = [np.abs(table.depth - (low + share * span)) for share in (0.0, 0.5, 1.0)]
+    least, middle, most = (float(np.median(table.force[each <= max(0.1 * span, each.min())])) for each in away)
+    bent = (middle - least) / (most - least) - 0.5 if most > least else -0.5
+    return bent > STRAIGHT or (bent > -STRAIGHT and float(table.force.max()) < TURNED * -float(table.force.min()))
 
 
 def _upside_down(table: TrialTable) -> bool:

@@ -22,7 +22,7 @@ from benchmark.files.overrides import put_in
 from benchmark.files.schema import validated
 from benchmark.files.sessions.description import SessionFile
 from benchmark.files.sessions.doubts import doubtful_forces, doubtful_kinds, doubtful_times
-from benchmark.files.sessions.recordings import Recording, read_recordings, with_headers
+from benchmark.files.sessions.recordings import BOTH_TURNED, Recording, read_recordings, with_headers
 from benchmark.files.sessions.session_folder import (
     SESSION_FILE,
     inside,
@@ -143,7 +143,8 @@ def propose(folder: Path, told: Overrides = NOTHING) -> Proposal:
     if not _holds(folder / SPECIMEN_FILE, body):
         _refuse_existing(folder / SPECIMEN_FILE)
     texts = {SPECIMEN_FILE: body, SESSION_FILE: "\n".join([*head, *trials]) + "\n"}
-    doubts = (*_doubts(read.trials, named), *said)
+    turned = (each for each in read.warnings if BOTH_TURNED in each)
+    doubts = (*turned, *_doubts(read.trials, named), *said)
     return Proposal(texts, to_say, (*doubts, *read.aside, *unclosed_recordings(source), *unused_films(source, paths)))
 
 

@@ -33,6 +33,7 @@ from bench_hw.tables import TrialTable
 from bench_hw.trial_file import ending_of_trial
 from benchmark.errors import InputError
 from benchmark.files.sessions.description import ConditionKeys, SessionFile, TrialEntry
+from benchmark.files.sessions.doubts import pressed_negative
 from benchmark.files.sessions.session_folder import SESSION_FILE
 from benchmark.files.sessions.trials import read_table
 from benchmark.files.units import LENGTH, format_quantity, parse_quantity, split_uncertainty
@@ -43,6 +44,8 @@ NOTES = (".txt", ".dat", ".asc", ".tab", ".tsv")
 
 NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 """A number that stands by itself in a text."""
+BOTH_TURNED = "force and depth only fall as the tool presses: both are turned"
+"""Said of the bench's own tables."""
 SHALLOWEST = 25e-6
 """A session pressed less deep (m) has no tool of the assumed 5 mm radius, 200 times as wide: it is asked for."""
 
@@ -128,7 +131,7 @@ def read_recordings(file: SessionFile, paths: Sequence[Path], *, listed: bool) -
         if told is None:
             ending, used = _ending(path, listed=listed)
             aside += ending
-            trials += [Recording(entry, "", read_table(path))] if used else []
+            trials += [_own(entry, path)] if used else []
             continue
         try:
             read = read_instrument_file(path, told)
@@ -152,6 +155,14 @@ def read_recordings(file: SessionFile, paths: Sequence[Path], *, listed: bool) -
         said = "".join(f" {each}." for each in aside)
         raise InputError(f"{paths[0].parent}: no file holds a trial; allowed: tables with time, depth and force.{said}")
     return Recordings(tuple(trials), tuple(shown), (*_warnings(trials), *aside), tuple(aside))
+
+
+def _own(entry: TrialEntry, path: Path) -> Recording:
+    """The bench's own table, with press positive where its numbers surely say that it is negative."""
+    table = read_table(path)
+    if not pressed_negative(table):
+        return Recording(entry, "", table)
+    return Recording(entry, "", replace(table, depth=-table.depth, force=-table.force), notes=(BOTH_TURNED,))
 
 
 def _ending(path: Path, *, listed: bool) -> tuple[list[str], bool]:

@@ -317,7 +317,7 @@ def test_rows_without_a_number_are_left_out_of_the_benchs_own_table_where_told(t
 
 
 def test_a_depth_that_is_never_positive_is_no_question_of_the_tool(tmp_path):
-    turned(tmp_path / "day" / "one.csv", depth="-")
+    turned(tmp_path / "day" / "one.csv", force="", depth="-")
     said = refusal(tmp_path / "day")
     assert "the depth is never above zero (down to -1.45 mm)" in said
     assert "--set import.depth" in said
