@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final
 
@@ -16,7 +16,15 @@ from numpy.typing import NDArray
 
 from bench_hw.errors import TableError
 from bench_hw.instrument_files.text_sheet import Cell, Sheet, is_absent, is_number, number_text
-from bench_hw.instrument_files.vocabulary import HeaderFact, clock_seconds, label_and_unit, plain, role_of, unit_of
+from bench_hw.instrument_files.vocabulary import (
+    UNITS,
+    HeaderFact,
+    clock_seconds,
+    label_and_unit,
+    plain,
+    role_of,
+    unit_of,
+)
 from bench_hw.tables.columns import numbers_of
 from bench_hw.tables.units import FloatArray
 
@@ -50,6 +58,8 @@ class Block:
         What stands above the block.
     spoken : str
         The words above the block, for what they say of the kind of test.
+    contradicted : Mapping[int, str]
+        Of columns whose name and units row (or a container's unit) tell two different units, the one not in `units`.
     """
 
     path: Path
@@ -62,6 +72,7 @@ class Block:
     decimal: str = "."
     facts: tuple[HeaderFact, ...] = ()
     spoken: str = ""
+    contradicted: Mapping[int, str] = field(default_factory=dict)
 
     @property
     def rows(self) -> int:
@@ -125,7 +136,19 @@ def block_of_arrays(
     names = [each if units.get(each) else label for each, (label, _) in zip(columns, split, strict=True)]
     arrays = tuple(np.asarray(values, dtype=np.float64).ravel() for values in columns.values())
     lines = np.arange(1, len(arrays[0]) + 1)
-    return Block(path, name, tuple(names), tuple(said), tuple(columns), arrays, lines, facts=tuple(facts), spoken=name)
+    odd = _contradicted(said, [unit for _, unit in split])
+    return Block(
+        path,
+        name,
+        tuple(names),
+        tuple(said),
+        tuple(columns),
+        arrays,
+        lines,
+        facts=tuple(facts),
+        spoken=name,
+        contradicted=odd,
+    )
 
 
 def _is_data(row: Sequence[Cell], decimal: str) -> bool:
@@ -237,7 +260,18 @@ def _block(path: Path, sheet: Sheet, above: int, first: int, last: int) -> Block
         sheet.decimal,
         tuple(header_facts(rows)),
         " ".join(str(cell) for row in (*rows, raw) for cell in row if isinstance(cell, str)),
+        _contradicted([unit for _, unit in split], said),
     )
+
+
+def _contradicted(units: Sequence[str], others: Sequence[str]) -> dict[int, str]:
+    """Of the columns whose two units are both known and differ, the other one; a dash is none."""
+    known = [(unit_of(unit), unit_of(other)) for unit, other in zip(units, others, strict=True)]
+    return {
+        k: other
+        for k, (unit, other) in enumerate(known)
+        if unit and other and not {unit, other} & {"-", "1"} and UNITS[unit] != UNITS[other]
+    }
 
 
 def _named(name: str, unit: str) -> tuple[str, str]:
@@ -301,6 +335,7 @@ def _part(block: Block, number: int, start: int, width: int) -> Block:
         units=tuple(block.units[k] for k in columns),
         columns=tuple(block.columns[k][:rows] for k in columns),
         lines=block.lines[:rows],
+        contradicted={k - start: unit for k, unit in block.contradicted.items() if k in columns},
     )
 
 

@@ -70,6 +70,8 @@ def _told(block: Block, role: str, source: ColumnSource) -> Taken:
             "no column is called so" if not matching else f"{len(matching)} columns are called so"
         )
         raise TableError(block.path, problem, f"one of {block.header}, by its name or its place #N", column=source.name)
+    if not source.unit:
+        _check_one_unit(block, role, matching[0])
     unit = source.unit or _unit(block, matching[0])
     return _taken(block, role, role, matching[0], unit, source.sign)
 
@@ -92,7 +94,19 @@ def _by_word(block: Block, role: str, kind: str) -> Taken | None:
             example = f"#{first + 1}:{_unit(block, first) or _EXAMPLES[role]}"
             problem = f"two columns could be the {role}: {names}"
             raise TableError(block.path, problem, f"name one, {asking(role, example)}", row=header_line(block))
+    _check_one_unit(block, role, first)
     return _taken(block, role, kind, first, _unit(block, first), 0)
+
+
+def _check_one_unit(block: Block, role: str, column: int) -> None:
+    """Refuse a column whose name and units row tell two units, where nobody says which it is."""
+    if (other := block.contradicted.get(column)) is None:
+        return
+    name, unit = block.headers[column], block.units[column]
+    problem = f"the unit of the {role} is told as {unit} and as {other}, by the column's name and the units beside it"
+    one, two = (f"#{column + 1}:{each}" for each in (unit, other))
+    allowed = f"one unit; where {unit} is right, {asking(role, one)}, where {other} is, {asking(role, two)}"
+    raise TableError(block.path, problem, allowed, row=header_line(block), column=name)
 
 
 def _unit(block: Block, column: int) -> str:

@@ -56,6 +56,11 @@ TEXTS = {
     ),
     "no unit of time": (table("Time,Distance (mm),Force (N)"), r"unit of the time.*import\.time=\"Time:s\""),
     "no units at all": (table("Time,Distance,Force"), r"the unit of the time stands neither.*row 1|row 1.*unit of the time"),
+    "force in two units": (
+        table("Time [s],Weg [mm],Kraft [N]\ns,mm,kN"),
+        r"row 2, column 'Kraft \[N\]'.*force is told as N and as kN.*import\.force=\"#3:N\".*import\.force=\"#3:kN\"",
+    ),
+    "time in two units": (table("Time [ms],Weg [mm],Kraft [N]\n[s],[mm],[N]"), r"time is told as ms and as s.*\"#1:ms\""),
     "volts": (table("Time (s),Distance (mm),Force (V)"), "no column is the force"),
     "depth in newtons": (table("Time (s),Distance (N),Force (N)"), "no column is the depth"),
     "strange names": (table("a,b,c"), "no column is the force.*'a', #2 'b', #3 'c'"),

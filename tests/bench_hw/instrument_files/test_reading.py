@@ -669,3 +669,13 @@ def test_a_workbook_whose_commas_may_be_thousands_is_refused(tmp_path):
     path = samples.workbook(tmp_path / "a.xlsx", {"Daten": [["Zeit [s]", "Weg [mm]", "Kraft [N]"], *rows]})
     with pytest.raises(TableError, match="the comma may stand before decimals or thousands"):
         read_instrument_file(path)
+
+
+@pytest.mark.parametrize(("units", "force"), [("s,mm,kN", "#3:kN"), ("-,-,-", None), ("[s],[mm],[newton]", None)])
+def test_two_units_of_a_column_are_one_where_it_is_told_or_both_say_the_same(units, force, tmp_path):
+    one = press()
+    path = tmp_path / "a.csv"
+    lines = ["Time [s],Weg [mm],Kraft [N]", units, *samples.rows(one.time, one.depth, one.force, digits=(3, 5, 6))]
+    path.write_text("\n".join(lines) + "\n")
+    (record,) = read_instrument_file(path, Told(columns={"force": force} if force else {})).records
+    assert record.table.force.max() == pytest.approx(one.force.max() * (1e3 if force else 1.0), rel=0.01)
