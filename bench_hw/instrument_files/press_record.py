@@ -25,6 +25,8 @@ from bench_hw.tables.units import FloatArray
 
 SURE: Final = 6.0
 """Of its noise, above which a force is one."""
+BESIDE: Final = 5
+"""Written times beside the first or last from which its rows' step is taken, as rows in each differ by one."""
 SMALL_TRAVEL: Final = 0.1
 """Of the whole travel, below which the place of the peak force does not tell which way is pressing."""
 ALIKE: Final = 0.6
@@ -220,7 +222,11 @@ def _empty(block: Block, found: Mapping[str, Taken], row: int) -> bool:
 
 
 def _times(path: Path, time: FloatArray, lines: np.ndarray, notes: list[str]) -> FloatArray:
-    """Times that increase: those that repeat since they were written with few decimals are spread evenly."""
+    """Times that increase: those that repeat since they were written with few decimals are spread evenly.
+
+    The record begins at its first time. First and last times that stand in fewer rows than the others, as of a record
+    that is rounded or ends between two decimals, are spread at the step beside them.
+    """
     steps = np.diff(time)
     repeated = int((steps == 0.0).sum())
     if not repeated or (steps < 0.0).any() or repeated > 0.95 * len(steps):
@@ -231,7 +237,18 @@ def _times(path: Path, time: FloatArray, lines: np.ndarray, notes: list[str]) ->
         check_increasing(path, "time", time, lines)
     notes.append(f"{repeated} times repeat the one before (written to {np.diff(time[first]).min():g} s): spread")
     knots = np.append(time[first], time[first][-1] + float(np.median(np.diff(time[first]))))
-    return np.asarray(np.interp(np.arange(len(time)), np.append(first, len(time)), knots))
+    places = np.append(first, len(time))
+    return np.asarray(np.interp(np.arange(len(time)), places, _ends_at_pace(knots, np.diff(places))))
+
+
+def _ends_at_pace(knots: FloatArray, rows: np.ndarray) -> FloatArray:
+    """Knots (g + 1,), s, of times that stand in `rows` (g,), their ends nearer where they stand in fewer rows."""
+    out, inner = knots.copy(), rows[1:-1]
+    for end, beside, own in ((0, inner[:BESIDE], knots[1:-1]), (-1, inner[::-1][:BESIDE], knots[1:-1][::-1])):
+        if len(beside) and rows[end] < np.median(beside):
+            pace = (own[len(beside)] - own[0]) / beside.sum()
+            out[end] = np.clip(own[0] - pace * rows[end], knots[0], knots[-1])
+    return np.asarray(out - (out[0] - knots[0]))
 
 
 def _si_press(

@@ -679,3 +679,16 @@ def test_two_units_of_a_column_are_one_where_it_is_told_or_both_say_the_same(uni
     path.write_text("\n".join(lines) + "\n")
     (record,) = read_instrument_file(path, Told(columns={"force": force} if force else {})).records
     assert record.table.force.max() == pytest.approx(one.force.max() * (1e3 if force else 1.0), rel=0.01)
+
+
+@pytest.mark.parametrize(("count", "written"), [(650, np.round), (655, np.floor), (647, np.floor)])
+def test_times_of_a_tenth_of_a_second_keep_their_pace_at_both_ends(count, written, tmp_path):
+    """First and last rows of times that are rounded were 17 and 25 ms apart instead of 10, the end 85 ms late."""
+    time = 0.01 * np.arange(count)
+    depth = 2.0 - np.abs(time - 3.0)
+    rows = samples.rows(written(10.0 * time + 1e-9) / 10.0, depth, np.clip(depth, 0.0, None), digits=(1, 5, 6))
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join(["Time [s],Depth [mm],Force [N]", *rows]) + "\n")
+    (record,) = read_instrument_file(path, Told()).records
+    np.testing.assert_allclose(record.table.time, time, atol=0.012)
+    assert np.diff(record.table.time)[[0, -1]] == pytest.approx(0.01, rel=0.1)
