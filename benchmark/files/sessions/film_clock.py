@@ -9,6 +9,7 @@ minimum that is nearly as deep (a press like the one before) is not decided here
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,6 +23,12 @@ STEPS = 4
 """Shifts tried for each step of the slower clock."""
 RIVAL = 1.5
 """Of the least sum of squares: another shift, apart by a tenth of the press, below so much could be the right one."""
+LATE, SURELY = 0.1, 6.0
+"""Seconds, and standard deviations of the shift, beyond which markers that share the trial's clock are off it."""
+CLOSELY = 0.998
+"""Of the markers' variance that the shift then explains: a tool with backlash follows late, too, but less closely."""
+ENOUGH = 500
+"""Pictures that tell so, of a film that has more."""
 LEAST_EXPLAINED = 0.9
 """Of the markers' variance that the best shift must explain."""
 
@@ -116,3 +123,26 @@ def on_trials_clock(name: str, table: TrialTable, markers: MarkerTable) -> tuple
         f"s), found from the press: it explains {100 * found.explained:.1f} % of the markers' way"
     )
     return replace(markers, time=markers.time + found.shift), said
+
+
+def doubtful_clocks(names: Sequence[str], tables: Sequence[TrialTable], films: Sequence[MarkerTable]) -> list[str]:
+    """A warning of films that are said to be on their trials' clock, and follow the press at another time."""
+    off: dict[str, float] = {}
+    for name, table, film in zip(names, tables, films, strict=True):
+        frames = np.unique(film.time)
+        kept = np.isin(film.time, frames[:: len(frames) // ENOUGH + 1])
+        columns = {key: getattr(film, key)[kept] for key in ("time", "marker", "x", "y")}
+        try:
+            found = film_shift(name, table, replace(film, **columns))
+        except InputError:
+            continue  # they do not move, or tell no time
+        if abs(found.shift) > max(LATE, SURELY * found.deviation) and found.explained > CLOSELY:
+            off[name] = found.shift
+    if not off:
+        return []
+    first = [f"{name} ({shift:+.3f} s)" for name, shift in list(off.items())[:3]]
+    more = f" and {len(off) - 3} more" if len(off) > 3 else ""
+    return [
+        f"the markers follow the press at other times than their own: {', '.join(first)}{more}; allowed: times on the "
+        'trial\'s clock, or camera.clock = "press", which adds these shifts'
+    ]

@@ -27,7 +27,7 @@ from benchmark.files.sessions.column_labels import check_labels
 from benchmark.files.sessions.depth_counts import even_depths
 from benchmark.files.sessions.description import Camera, SessionFile, assumed_edges, assumptions, base_setup, setups
 from benchmark.files.sessions.doubts import check_markers, doubtful_forces, doubtful_markers, doubtful_times
-from benchmark.files.sessions.film_clock import on_trials_clock
+from benchmark.files.sessions.film_clock import doubtful_clocks, on_trials_clock
 from benchmark.files.sessions.recordings import (
     Recording,
     check_tool_is_told,
@@ -209,9 +209,17 @@ def _trials(
                 found, said = on_trials_clock(name, table, found)
                 warnings.append(said)
         trials.append(Trial(name, each.entry.condition, path, condition.tool, condition.support, table, found, markers))
-    filmed = {each.name: each.markers for each in trials if each.markers is not None}
-    doubts = [] if file.camera is None else doubtful_markers(list(filmed), list(filmed.values()), file.camera)
-    return trials, [*warnings, *counts, *doubts]
+    return trials, [*warnings, *counts, *_doubts(trials, file.camera)]
+
+
+def _doubts(trials: Sequence[Trial], camera: Camera | None) -> list[str]:
+    """What to ask of the markers' places and times."""
+    filmed = [(each.name, each.table, each.markers) for each in trials if each.markers is not None]
+    if camera is None or not filmed:
+        return []
+    names, tables, markers = zip(*filmed, strict=True)
+    late = doubtful_clocks(names, tables, markers) if camera.clock == "shared" else []
+    return [*doubtful_markers(names, markers, camera), *late]
 
 
 def _doubled(read: Sequence[Recording]) -> list[str]:

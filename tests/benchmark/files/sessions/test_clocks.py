@@ -5,7 +5,7 @@ import pytest
 
 from bench_hw.tables import MarkerTable, TrialTable
 from benchmark.errors import InputError
-from benchmark.files.sessions.film_clock import film_shift, on_trials_clock
+from benchmark.files.sessions.film_clock import doubtful_clocks, film_shift, on_trials_clock
 from tests.instruments.samples import press
 
 
@@ -52,3 +52,12 @@ def test_a_film_of_one_press_of_many_is_asked_for():
     part = MarkerTable(markers.time[one], markers.marker[one], markers.x[one], markers.y[one])
     with pytest.raises(InputError, match=r"shifted by .* and by"):
         film_shift("a", table, part)
+
+
+def test_a_film_off_the_clock_that_it_is_said_to_share_is_told() -> None:
+    """Half a second was taken without a word by `fit` and `run`."""
+    films = [trial_and_film(shift, seed, noise=2e-6) for seed, shift in enumerate((0.0, 0.5, 0.03))]
+    films.append(trial_and_film(0.0, 3, noise=5e-3))
+    (said,) = doubtful_clocks("abcd", *zip(*films, strict=True))
+    assert said.startswith("the markers follow the press at other times than their own: b (+0.5")
+    assert said.count(" s)") == 1

@@ -185,6 +185,11 @@ def test_markers_need_a_camera(session_folder, change):
     assert session.trials[0].markers.marker.max() == 2
     assert session.trials[1].markers is None
     assert session.camera.marker_spacing == 1e-3
+    assert any("one: the middle of the markers is at (1, 0) mm" in warning for warning in session.warnings)
+    said = refusal(session_folder, {**grid, "camera.marker_spacing": "1 inch"})
+    assert (
+        "markers.csv: x_mm, y_mm: markers at rest are 1 mm apart, camera.marker_spacing tells 25.4 mm (inch?)" in said
+    )
 
 
 def test_the_fingerprint_covers_every_file(session_folder, tissue_file, change):
