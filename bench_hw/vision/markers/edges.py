@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import ceil, floor
 from typing import TypeVar
 
 import cv2
@@ -28,6 +29,11 @@ _SPREADS = 4.0
 """... or within so many usual deviations, if those are more."""
 _EDGE_WIDTH = 3.0
 """Contrast over the slope of a smoothed edge, pixels: of a webcam's sharpness."""
+_WHITE = 245.0
+"""Paper brighter than this shows no noise: the ink's counts too."""
+_BESIDE, _LEAST_RISE, _FARTHEST = 1.0, 1.0, 3.0
+"""The slope beside an edge is taken over so many pixels, is at least so many grey levels over them, and is greatest
+within so many pixels."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -122,8 +128,8 @@ def sample(grey: Picture, centres: FloatArray, fan: RayFan) -> Float32Array:
 
 def _window(middles: FloatArray, reach: float, size: int) -> tuple[int, int]:
     """The part of the picture that is needed, a pixel wider than the samples, at least one pixel."""
-    first = int(np.clip(np.floor(middles.min() - reach) - 1, 0, size - 1))
-    return first, int(np.clip(np.ceil(middles.max() + reach) + 2, first + 1, size))
+    first = min(max(floor(middles.min() - reach) - 1, 0), size - 1)
+    return first, min(max(ceil(middles.max() + reach) + 2, first + 1), size)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -145,6 +151,9 @@ class Edges:
         Standard deviation of either number of `tilt`.
     noise : ndarray, shape (m,)
         Standard deviation of a radius as the noise of the paper lets it be expected, pixels; rough.
+    steepest : ndarray, shape (m, rays / 2)
+        Of every second ray, how far outwards of the edge the grey level rises most steeply, pixels: no light on ink and
+        paper moves that; 0 where there is no edge, or the ray does not reach beyond it.
     """
 
     radius: FloatArray
@@ -153,6 +162,7 @@ class Edges:
     tilt: FloatArray
     tilt_std: FloatArray
     noise: FloatArray
+    steepest: FloatArray
 
 
 def find_edges(profiles: Float32Array, fan: RayFan, tilt: FloatArray) -> Edges:
@@ -185,8 +195,12 @@ def find_edges(profiles: Float32Array, fan: RayFan, tilt: FloatArray) -> Edges:
     count = fan.directions.shape[1]
     seen_tilt = paper.astype(np.float64) @ fan.directions.T * (2.0 / count * dimming[:, None])
     tilt_std = spread * dimming * np.sqrt(2.0 / count)
+    if usual_paper.max(initial=0.0) > _WHITE:
+        spread = np.maximum(spread, 1.4826 * _medians(np.abs(ink - usual_ink[:, None])))
     noise = _EDGE_WIDTH * spread / np.maximum(contrast, 1.0)
-    return Edges(np.where(there, radius, 0.0), there, contrast, seen_tilt, tilt_std, noise)
+    steepest, told = _steepest(filtered, at, (before, after), middle, fan)
+    steepest = np.where(there[:, ::2] & told, steepest - radius[:, ::2], 0.0)
+    return Edges(np.where(there, radius, 0.0), there, contrast, seen_tilt, tilt_std, noise, steepest)
 
 
 def _crossing(filtered: Float32Array, middle: Float32Array) -> tuple[IntArray, FloatArray, FloatArray]:
@@ -199,6 +213,31 @@ def _crossing(filtered: Float32Array, middle: Float32Array) -> tuple[IntArray, F
     place = at + np.arange(0, filtered.size, filtered.shape[2]).reshape(at.shape)
     before, after = (filtered.take(place + ahead).astype(np.float64) - middle for ahead in (0, 1))
     return at, before, after
+
+
+def _steepest(
+    filtered: Float32Array, at: IntArray, beside: tuple[FloatArray, FloatArray], middle: Float32Array, fan: RayFan
+) -> tuple[FloatArray, NDArray[np.bool_]]:
+    """How far from the middle every second profile rises most steeply, pixels, and whether it reaches beyond.
+
+    Profiles (m, rays, smooth + 2), `at`, `beside` and `middle` are those of `_crossing`.
+
+    The slope of a blurred edge is a Gaussian about the edge: the logarithms of two slopes differ by their middle's
+    distance from the edge times their own distance, over the square of its width, which is the contrast over the
+    greatest slope and the root of 2 pi.
+    """
+    wide = max(1, round(_BESIDE / fan.step))
+    first = np.arange(0, filtered.size, filtered.shape[2]).reshape(at.shape)[:, ::2]
+    at, before, after = at[:, ::2], beside[0][:, ::2], beside[1][:, ::2]
+    told = (at >= wide) & (at + wide < filtered.shape[2] - 3)
+    inner = filtered.take(first + np.maximum(at - wide, 0)) - middle[:, ::2]
+    outer = filtered.take(first + at + 1 + wide, mode="clip") - middle[:, ::2]
+    low, high = (np.maximum(rise, _LEAST_RISE).astype(np.float32) for rise in (before - inner, outer - after))
+    slope = np.maximum((outer - inner).mean(axis=1), _LEAST_RISE) / (fan.step * (2 * wide + 1))
+    contrast = (filtered[:, :, -1] - filtered[:, :, -2]).mean(axis=1)
+    square = (contrast / slope) ** 2 / (2.0 * np.pi)
+    shift = (square / (fan.step * (wide + 1)))[:, None] * np.log(high / low)
+    return fan.smooth_radii[at] + 0.5 * fan.step + np.clip(shift, -_FARTHEST, _FARTHEST), told
 
 
 def _strangeness(paper: FloatArray) -> FloatArray:

@@ -25,6 +25,8 @@ _WIDER = 3
 _FEWEST_RAYS = 10
 _ROUNDS = 8
 _NEW_GROWTH, _NEW_ROUNDNESS = 0.15, 0.2
+_ALIKE = 1.25
+"""How much more a mean over every second ray strays than if they were independent: neighbours see the same pixels."""
 _FOUND_ROUNDNESS = 0.12
 """Of the mean radius: how far the outline of a marker that is found again may be from an ellipse."""
 
@@ -182,6 +184,8 @@ def _bounded(numbers: FloatArray, bound: FloatArray) -> FloatArray:
 
 def _fit(change: FloatArray, weight: FloatArray, basis: FloatArray) -> FloatArray:
     """Weighted least squares, (m, 5); zero for a marker with too few rays."""
+    if weight.all() and weight.max(initial=1.0) == 1.0 and len(basis) >= _FEWEST_RAYS:  # shapes at even angles part
+        return np.asarray(change @ basis * (np.array([1.0, 2.0, 2.0, 2.0, 2.0]) / len(basis)))
     products = (basis[:, :, None] * basis[:, None, :]).reshape(len(basis), -1)
     normal = (weight @ products).reshape(-1, basis.shape[1], basis.shape[1])
     right = (weight * change) @ basis
@@ -189,6 +193,53 @@ def _fit(change: FloatArray, weight: FloatArray, basis: FloatArray) -> FloatArra
     normal[few], right[few] = np.eye(basis.shape[1]), 0.0
     normal += 1e-6 * np.eye(basis.shape[1])
     return np.asarray(np.linalg.solve(normal, right[:, :, None])[:, :, 0])
+
+
+def light_shift(edges: Edges, sound: NDArray[np.bool_], basis: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Give how far centroids are from those of where the grey level rises most steeply, and the standard deviation.
+
+    Light that is uneven across a marker, as beside a reflection, moves the middle level between ink and paper; it does
+    not move the steepest place of an edge.
+
+    Parameters
+    ----------
+    edges : Edges
+        Of k markers.
+    sound : ndarray of bool, shape (k, rays)
+        The rays that count.
+    basis : ndarray, shape (rays, 5)
+        From `outline_basis`.
+
+    Returns
+    -------
+    shift : ndarray, shape (k, 2)
+        To be added to the centroids, pixels.
+    deviation : ndarray, shape (k,)
+        Of either number, by what the rays differ by among themselves.
+    """
+    sound, basis = sound[:, ::2], basis[::2]
+    numbers = _fit(edges.steepest, sound.astype(np.float64), basis)
+    left = sound * (edges.steepest - numbers @ basis.T)
+    free = np.maximum(sound.sum(axis=1) - len(basis.T), 1)
+    return numbers[:, 1:3], _ALIKE * np.sqrt(2.0 / len(basis) * np.einsum("ij,ij->i", left, left) / free)
+
+
+def shape_waves(basis: FloatArray) -> FloatArray:
+    """Give the second and third harmonics (rays, 4) of which `shapes` are made, from an `outline_basis`."""
+    (c, s), (c2, s2) = basis[:, 1:3].T, basis[:, 3:].T
+    return np.asarray(2.0 / len(basis) * np.stack([c2, s2, c * c2 - s * s2, s * c2 + c * s2], axis=1))
+
+
+def shapes(radius: FloatArray, waves: FloatArray) -> NDArray[np.complex128]:
+    """Give the second and the third harmonic of outlines (k, rays) about their centroids, shares of the mean radius.
+
+    Returns
+    -------
+    ndarray of complex, shape (k, 2)
+        Of an ellipse with the half axes a and b the second has the size (a - b) / (a + b); the third is 0 for every
+        outline that is alike on opposite sides, however it is stretched.
+    """
+    return np.asarray((radius @ waves / radius.mean(axis=1)[:, None]).view(np.complex128))
 
 
 def accept_found(edges: Edges, outlines: Outlines, basis: FloatArray) -> Outlines:

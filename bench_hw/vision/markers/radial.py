@@ -23,7 +23,10 @@ from bench_hw.vision.markers.outline import (
     area_centroids,
     compare,
     fan_centroids,
+    light_shift,
     outline_basis,
+    shape_waves,
+    shapes,
 )
 
 Scalar = TypeVar("Scalar", np.float64, np.bool_)
@@ -61,6 +64,24 @@ _FAN_MARGIN, _FAN_SHARE, _NEW_FAN = 5.0, 1.5, 0.06
 are laid out anew where that radius is off by more than the last."""
 
 
+_SURE_LIGHT = 5.5
+"""So many standard deviations must the steepest places of the edges be beside the centroid to be taken in its stead."""
+_LEFT = 0.5
+"""Share of that correction that may be wrong."""
+_UNLIKE_NOISE, _UNLIKE_GROWTH, _UNLIKE_STRETCH, _UNLIKE_ASIDE = 6.0, 0.01, 0.08, 4.0
+"""How far the third harmonic of an outline may change: standard deviations of it; shares of the radius for each part of
+growth and of drawing out, which go along with odd shapes; shares of how far the outline is from a circle, for each
+radius by which the rays begin off its middle."""
+_DENT = 2.0
+"""Way of the centroid for a third harmonic that is beyond that: a dent shows in every harmonic alike."""
+_LEAST = 1e-4
+"""Confidence of what is seen, at least: 0 is unseen."""
+DOUBTFUL = 0.05
+"""A marker whose centroid may be off by more than this share of its radius is not seen..."""
+_DOUBT = 0.03
+"""... and its confidence falls by e for each such share."""
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class Look:
     """Edges and outlines of some markers.
@@ -94,6 +115,7 @@ class Look:
                 _joined(edges.tilt, new.tilt, where),
                 _joined(edges.tilt_std, new.tilt_std, where),
                 _joined(edges.noise, new.noise, where),
+                _joined(edges.steepest, new.steepest, where),
             ),
             Outlines(
                 _joined(self.outlines.radius, part.outlines.radius, where),
@@ -128,15 +150,19 @@ class MarkerEdges:
         self._fan = ray_fan(grid.radius, grid.spacing)
         self._grid_radius, self._spacing = grid.radius, grid.spacing
         self._basis = outline_basis(self._fan)
+        self._waves = shape_waves(self._basis)
         self._outline = np.full((count, len(self._basis)), grid.radius)
         self._tilt, self._lit = np.zeros((count, 2)), np.zeros(count)
         self._inverse = camera.undistorted(grid.centres)
         self._looks = 0
+        self.shape = np.zeros((count, 2), dtype=np.complex128)
+        self._first_shape = np.full((count, 2), complex(np.nan))
         self._slack, self._noise = np.full(count, _FIRST_SLACK), np.full(count, np.inf)
         self._contrast, self._radius = np.ones(count), np.full(count, grid.radius)
         everyone = np.arange(count)
         first = self._look(grey, grid.centres, everyone, self._tilt)
         self._contrast, self._radius = first.edges.contrast, first.outlines.radius.mean(axis=1)
+        first, _ = self._checked(first, everyone)
         self._learn(first, everyone, first.outlines.share > LEAST_SHARE)
 
     @property
@@ -171,8 +197,9 @@ class MarkerEdges:
             found = accept_found(look.edges, look.outlines, self._basis)
             pixels = look.middles + np.nan_to_num(fan_centroids(found.radius, self._fan.directions))
             look = replace(look, outlines=found, pixels=pixels)
+        look, doubt = self._checked(look, which)
         points, radius = self._undistorted(look, which)
-        confidence = self._confidence(look, which)
+        confidence = self._confidence(look, which) * confidence_left(doubt, radius)
         confidence[~np.isfinite(points).all(axis=1)] = 0.0
         if searched:
             confidence[look.edges.noise > _UNEVEN * self._noise[which]] = 0.0
@@ -180,7 +207,35 @@ class MarkerEdges:
         whole = seen & (look.outlines.share > _WHOLE_SHARE)
         self._follow(look, which, seen & ~whole)
         self._learn(look, which, whole)
-        return Sighting(points, look.pixels, radius, confidence, _stated_error(look)).kept(seen)
+        error = np.hypot(_stated_error(look), np.sqrt(0.5) * doubt)
+        sighting = Sighting(points, look.pixels, radius, confidence, error)
+        return sighting if seen.all() else sighting.kept(seen)
+
+    def _checked(self, look: Look, which: IntArray) -> tuple[Look, FloatArray]:
+        """Correct for uneven light on the ink, and say how far each centroid may be off beside noise, pixels."""
+        shift, deviation = light_shift(look.edges, look.outlines.sound, self._basis)
+        lit = np.sqrt((shift * shift).sum(axis=1))
+        lit[lit < _SURE_LIGHT * deviation] = 0.0
+        if lit.any():
+            shift[lit == 0.0] = 0.0
+            radius = look.outlines.radius + shift @ self._fan.directions
+            look = replace(look, outlines=replace(look.outlines, radius=radius), pixels=look.pixels + shift)
+        return look, np.hypot(_LEFT * lit, self._dents(look, which))
+
+    def _dents(self, look: Look, which: IntArray) -> FloatArray:
+        """How far centroids may be off as outlines are other than at first on opposite sides, pixels, (k,)."""
+        aside = look.pixels - look.middles
+        about = look.outlines.radius - aside @ self._fan.directions
+        shape, size, first = shapes(about, self._waves), about.mean(axis=1), self._first_shape[which]
+        self.shape[which] = shape
+        change = np.abs(shape - first) * size[:, None]
+        least = _UNLIKE_NOISE * np.sqrt(2.0 / len(self._basis)) * look.edges.noise
+        if not (change[:, 1] > least).any():
+            return np.zeros(len(which))
+        uneven = np.sqrt(np.maximum(np.einsum("ij,ij->i", about, about) / len(self._basis) - size**2, 0.0))
+        allowed = least + _UNLIKE_GROWTH * np.abs(size - self._radius[which]) + _UNLIKE_STRETCH * change[:, 0]
+        allowed += _UNLIKE_ASIDE * uneven * np.hypot(aside[:, 0], aside[:, 1]) / size
+        return np.asarray(_DENT * np.fmax(change[:, 1] - allowed, 0.0))
 
     def _look(
         self, grey: Picture, starts: FloatArray, which: IntArray, tilt: FloatArray, passes: int = _PASSES
@@ -243,12 +298,15 @@ class MarkerEdges:
     def _fit_the_fan(self) -> None:
         """Lay the rays out anew where markers have grown out of them, or shrunk."""
         reach = min(float(self._outline.max()), _FARTHEST * self._grid_radius)
-        wanted = max(float(np.median(self._outline)), (reach + _FAN_MARGIN) / _FAN_SHARE)
+        middle = self._outline.size // 2
+        usual = float(np.partition(self._outline, middle, axis=None)[middle])
+        wanted = max(usual, (reach + _FAN_MARGIN) / _FAN_SHARE)
         if abs(wanted / self._fan.marker_radius - 1.0) <= _NEW_FAN:
             return
         old = self._fan
-        self._fan = ray_fan(wanted, self._spacing * float(np.median(self._outline)) / self._grid_radius)
+        self._fan = ray_fan(wanted, self._spacing * usual / self._grid_radius)
         self._basis = outline_basis(self._fan)
+        self._waves = shape_waves(self._basis)
         if self._fan.directions.shape != old.directions.shape:
             angles = [np.arange(fan.directions.shape[1]) / fan.directions.shape[1] for fan in (self._fan, old)]
             rows = [np.interp(angles[0], angles[1], row, period=1.0) for row in self._outline]
@@ -273,6 +331,8 @@ class MarkerEdges:
         shift = (look.pixels - look.middles)[whole]
         self._outline[chosen] = look.outlines.radius[whole] - shift @ self._fan.directions
         self._slack[chosen] = _SLACK
+        first = chosen[np.isnan(self._first_shape[chosen, 0])]
+        self._first_shape[first] = self.shape[first]
         noise = look.edges.noise[whole]
         new = ~np.isfinite(self._noise[chosen])
         self._noise[chosen[new]] = noise[new]
@@ -285,6 +345,21 @@ class MarkerEdges:
         pictures = np.where((np.abs(change) > _NEWS * std[:, None]).any(axis=1), 1.0, self._lit[chosen] + 1.0)
         self._lit[chosen] = pictures
         self._tilt[chosen] += np.maximum(_LEARNING, 1.0 / pictures)[:, None] * change
+
+
+def doubted(sighting: Sighting, doubt: FloatArray, kept: NDArray[np.bool_]) -> Sighting:
+    """Give a sighting whose centroids may be off by `doubt` (m,) more, pixels, with those not `kept` unseen."""
+    confidence = sighting.confidence * np.exp(-doubt / (_DOUBT * np.nan_to_num(sighting.radius, nan=1.0)))
+    error = np.hypot(sighting.error, np.sqrt(0.5) * doubt)
+    return replace(sighting, confidence=np.maximum(confidence, _LEAST) * sighting.seen, error=error).kept(
+        sighting.seen & kept
+    )
+
+
+def confidence_left(doubt: FloatArray, radius: FloatArray) -> FloatArray:
+    """Give the factor of the confidence of centroids that may be off by `doubt`, pixels like `radius`; 0 for unseen."""
+    share = doubt / radius
+    return np.where(share > DOUBTFUL, 0.0, np.exp(-share / _DOUBT))
 
 
 def _stated_error(look: Look) -> FloatArray:

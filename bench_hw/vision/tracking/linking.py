@@ -22,6 +22,20 @@ GATE = 0.49
 """Farthest a marker may be from where it was last seen, in spacings."""
 _WITNESSES, _CARRIERS = 4, 8
 """Nearest markers whose usual way counts, and whose affine map does."""
+AWAY = 0.25
+"""Farthest a marker may go, from a picture to the next, from where its neighbours carry it, in spacings; a marker that
+was lost, since it went."""
+_FOLLOW = 0.25
+"""How much of a picture is learned of how a marker usually differs from its neighbours."""
+_ALLOWED, _SHARE, _SHARE_ASIDE, _ODD = np.array([0.05, 0.02]), 0.5, 1.0, 0.1
+"""How far a marker may lie (spacings) and be drawn out (as `shapes` tell) otherwise than usual, as its neighbours show
+it; besides, a share of what their strain has changed, more where they lie on one side. A marker that was drawn out by
+more than the last number at first may become as the others."""
+_AMID = 0.3
+"""Farthest the middle of the neighbours may be from a marker, in spacings: else they lie on one side of it, and do not
+judge its place."""
+_LEAST_SPREAD = 0.5
+"""Of the neighbours, in spacings squared, along either direction, for a strain to be told."""
 _FORBIDDEN = 1e9
 _AGREE = 0.2
 _LEAST_SHARE = 0.6
@@ -154,6 +168,110 @@ def refuse_jump(last: FloatArray, spots: FloatArray, spacing: float) -> None:
             f"{float(np.hypot(*shift)) / spacing:.2f} of the marker spacing: its markers cannot be told apart; "
             "allowed: less than half the spacing from picture to picture"
         )
+
+
+class Neighbours:
+    """Compares each marker with the affine map of the markers next to it.
+
+    A sheet moves and strains smoothly. What has come in front of a marker, or has grown together with it, draws its
+    outline out where the sheet is not drawn out, or goes another way.
+
+    Parameters
+    ----------
+    rest : ndarray, shape (m, 2)
+        Where the markers were at first, pixels.
+    spacing : float
+        Distance of neighbours, pixels.
+    """
+
+    def __init__(self, rest: FloatArray, spacing: float) -> None:
+        self._rest, self._spacing = rest, spacing
+        distance = np.hypot(*(rest[:, None] - rest[None]).transpose(2, 0, 1))
+        self._near = np.argsort(distance, axis=1, kind="stable")[:, 1 : _CARRIERS + 1]
+        arms = (rest[self._near] - rest[:, None]) / spacing
+        self._amid = np.hypot(*arms.mean(axis=1).T) < _AMID
+        self._columns = np.concatenate([np.ones((*arms.shape[:2], 1)), arms], axis=2)
+        self._seen: NDArray[np.bool_] = np.zeros(0, dtype=bool)
+        self._usual = np.full((len(rest), 7), np.nan)
+
+    def _maps(self, ways: FloatArray) -> FloatArray:
+        """Way (pixels) and its change per spacing along x and y, at each marker by its neighbours; (m, 3, 2)."""
+        seen = np.isfinite(ways[:, 0])
+        if not np.array_equal(seen, self._seen):
+            columns = self._columns * seen[self._near, None]
+            normal = columns.transpose(0, 2, 1) @ columns
+            told = np.linalg.eigvalsh(normal)[:, 0] > _LEAST_SPREAD
+            normal[~told] = np.eye(3)
+            self._seen, self._solve = seen, np.linalg.solve(normal, columns.transpose(0, 2, 1))
+            self._solve[~told] = np.nan
+        return np.asarray(self._solve @ np.where(seen[:, None], ways, 0.0)[self._near])
+
+    def strayed(self, pixels: FloatArray, last: FloatArray) -> NDArray[np.bool_]:
+        """Tell which markers, now at `pixels` (m, 2), went from `last` another way than their neighbours did."""
+        ways = pixels - last
+        if not np.nanmax(np.abs(ways), initial=0.0) > 0.5 * AWAY * self._spacing:
+            return np.zeros(len(ways), dtype=bool)
+        usual = self._maps(ways)[:, 0]
+        allowed = AWAY * self._spacing + _SHARE * np.hypot(usual[:, 0], usual[:, 1])
+        return np.asarray(np.hypot(*(ways - usual).T) > allowed)
+
+    def unlike(self, pixels: FloatArray, drawn: NDArray[np.complex128]) -> tuple[FloatArray, FloatArray]:
+        """Compare with the usual difference from the neighbours.
+
+        Parameters
+        ----------
+        pixels : ndarray, shape (m, 2)
+            Where the markers are now; NaN where unseen.
+        drawn : ndarray of complex, shape (m,)
+            How their outlines are drawn out, as `shapes` tell it.
+
+        Returns
+        -------
+        way, stretch : ndarray, shape (m,)
+            How far each goes another way (pixels) and is drawn out otherwise, beyond what is allowed; 0 where nothing
+            can be told.
+        """
+        ways = pixels - self._rest
+        maps = self._maps(ways)
+        now = np.concatenate([(ways - maps[:, 0]) / self._spacing, _strain(maps[:, 1:] / self._spacing)], axis=1)
+        now[:, 2] = drawn.real - now[:, 4]
+        now[:, 3] = drawn.imag - now[:, 5]
+        change = now - self._usual
+        square = change * change
+        strain = np.where(self._amid, _SHARE, _SHARE_ASIDE) * np.sqrt(square[:, 4:].sum(axis=1))
+        off = np.sqrt(square[:, :4].reshape(-1, 2, 2).sum(axis=2))
+        beyond = off - _ALLOWED - strain[:, None]
+        beyond[~self._amid, 0] = 0.0
+        calm = ~(beyond > 0.0).any(axis=1)
+        if not calm.all():
+            calm |= self._as_others(now)
+        beyond = np.where(calm[:, None] | ~(beyond > 0.0), 0.0, beyond)
+        self._usual = np.where(calm[:, None] & np.isfinite(now), self._usual + _FOLLOW * change, self._usual)
+        new = np.isnan(self._usual)
+        if new.any():
+            self._usual[new] = now[new]
+        return beyond[:, 0] * self._spacing, beyond[:, 1]
+
+    def _as_others(self, now: FloatArray) -> NDArray[np.bool_]:
+        """Markers that were drawn out at first, by what touched them, and are now as the others: they begin anew."""
+        usual = np.nanmedian(now[:, 2:4], axis=0)
+        odd, here = (np.hypot(*(each[:, 2:4] - usual).T) for each in (self._usual, now))
+        back = (odd > _ODD) & (here < _ALLOWED[1])
+        self._usual[back] = now[back]
+        return np.asarray(back)
+
+
+def _strain(slope: FloatArray) -> FloatArray:
+    """Two free columns, how discs are drawn out (as `shapes` tell it) and the log of the root of their area, (m, 5).
+
+    Of displacement gradients (m, 2, 2), whose first index is the direction.
+    """
+    xx, xy, yx, yy = 1.0 + slope[:, 0, 0], slope[:, 1, 0], slope[:, 0, 1], 1.0 + slope[:, 1, 1]
+    area = np.abs(xx * yy - xy * yx)
+    left, right = xx * xx + xy * xy, yx * yx + yy * yy
+    whole = left + right + 2.0 * area
+    free = np.zeros_like(area)
+    return np.stack([free, free, (left - right) / whole, 2.0 * (xx * yx + xy * yy) / whole, 0.5 * np.log(area)], axis=1)
 
 
 class Absences:

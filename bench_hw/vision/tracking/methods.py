@@ -20,12 +20,16 @@ from bench_hw.vision.camera.distortion import distort
 from bench_hw.vision.camera.pinhole import Camera
 from bench_hw.vision.markers.detection import contrast_of, find_blobs
 from bench_hw.vision.markers.grid import DetectedGrid, FloatArray, Picture, Sighting
-from bench_hw.vision.markers.radial import MarkerEdges
-from bench_hw.vision.tracking.linking import GATE, Absences, doubles, link, refuse_jump
+from bench_hw.vision.markers.radial import MarkerEdges, doubted
+from bench_hw.vision.tracking.linking import AWAY, GATE, Absences, Neighbours, doubles, link, refuse_jump
 
 _BLOCK = 6.0
 _AREAS = (0.35, 2.6)
 _CLOSEST = 0.5
+_BOTH_WAYS = 2.0
+"""Way of a centroid, in radii, for what its outline is drawn out too much: two discs grown together."""
+_OTHER_SHAPE = 0.04
+"""Drawing out beyond what the neighbours allow, from which a marker is not seen."""
 RADIUS_RANGE = (0.6, 1.5)
 """Circles that are looked for, in radii of the markers."""
 VOTES = 0.13
@@ -53,7 +57,7 @@ class SubpixelTracker:
         self._way = np.zeros_like(self._last)
         self._everyone = np.arange(len(grid.centres))
         self._spacing, self._contrast = grid.spacing, contrast_of(grey)
-        self._absences = Absences(GATE * grid.spacing)
+        self._absences, self._neighbours = Absences(AWAY * grid.spacing), Neighbours(self._last, grid.spacing)
         area = np.pi * self._edges.radius**2
         self._areas = (_AREAS[0] * float(area.min()), _AREAS[1] * float(area.max()))
         self._block = round(_BLOCK * grid.radius)
@@ -74,13 +78,24 @@ class SubpixelTracker:
         sighting = self._plausible(self._edges.look(grey, self._last + self._way, self._everyone))
         if not sighting.seen.all():
             sighting = self._searched(grey, sighting)
-        sighting = self._absences.checked(sighting)
+        sighting = self._compared(self._absences.checked(sighting))
         self._absences.note(sighting, self._last)
         seen = sighting.seen
         self._way = np.where(seen[:, None], sighting.pixels - self._last, 0.0)
         self._last[seen] = sighting.pixels[seen]
         self._last = self._absences.carried(sighting, self._last)
         return sighting
+
+    def _compared(self, sighting: Sighting) -> Sighting:
+        """Leave out markers that went another way than their neighbours, and doubt those drawn out otherwise."""
+        strayed = self._neighbours.strayed(sighting.pixels, self._last)
+        if strayed.any():
+            sighting = sighting.kept(sighting.seen & ~strayed)
+        way, stretch = self._neighbours.unlike(sighting.pixels, self._edges.shape[:, 0])
+        if not (way.any() or stretch.any()):
+            return sighting
+        doubt = np.hypot(way, _BOTH_WAYS * stretch * self._edges.radius)
+        return doubted(sighting, doubt, stretch < _OTHER_SHAPE)
 
     def _plausible(self, sighting: Sighting) -> Sighting:
         """Leave out markers that went beyond the gate, or to another marker's place."""

@@ -6,7 +6,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bench_hw.vision.markers.edges import Edges, ray_fan
-from bench_hw.vision.markers.outline import accept_new_outlines, area_centroids, compare, fan_centroids, outline_basis
+from bench_hw.vision.markers.outline import (
+    accept_new_outlines,
+    area_centroids,
+    compare,
+    fan_centroids,
+    outline_basis,
+    shape_waves,
+    shapes,
+)
 
 far = st.floats(-1e3, 1e3)
 
@@ -53,7 +61,9 @@ def edges(radius: np.ndarray, there: np.ndarray | None = None) -> Edges:
     count = len(radius)
     there = np.ones(radius.shape, dtype=bool) if there is None else there
     numbers = np.ones(count)
-    return Edges(np.where(there, radius, 0.0), there, 170 * numbers, np.zeros((count, 2)), numbers, 0.05 * numbers)
+    steepest = np.zeros((count, radius.shape[1] // 2))
+    tilt = np.zeros((count, 2))
+    return Edges(np.where(there, radius, 0.0), there, 170 * numbers, tilt, numbers, 0.05 * numbers, steepest)
 
 
 @given(st.floats(-0.9, 0.9), st.floats(-0.9, 0.9), st.floats(-0.25, 0.25))
@@ -108,3 +118,12 @@ def test_nothing_seen_is_no_error():
     outlines = compare(nothing, BEFORE, BASIS, SLACK, NOISE)
     assert outlines.share[0] == 0.0
     assert outlines.radius == pytest.approx(BEFORE)
+
+
+def test_an_ellipse_has_no_third_harmonic_and_a_cut_disc_has():
+    ellipse = 12.0 * 8.0 / np.hypot(8.0 * np.cos(ANGLE - 0.4), 12.0 * np.sin(ANGLE - 0.4))
+    cut = np.minimum(10.0, 8.5 / np.maximum(np.cos(ANGLE), 1e-6))
+    second, third = shapes(np.stack([ellipse, cut]), shape_waves(BASIS)).T
+    assert second[0] == pytest.approx(0.2 * np.exp(0.8j), abs=0.01)
+    assert abs(third[0]) < 1e-9
+    assert abs(third[1]) > 0.02

@@ -6,7 +6,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bench_hw.vision.markers.grid import Sighting
-from bench_hw.vision.tracking.linking import GATE, Absences, JumpError, doubles, link, refuse_jump, rigid_jump
+from bench_hw.vision.tracking.linking import (
+    GATE,
+    Absences,
+    JumpError,
+    Neighbours,
+    doubles,
+    link,
+    refuse_jump,
+    rigid_jump,
+)
 
 SPACING = 50.0
 GRID = np.stack(np.meshgrid(np.arange(6.0), np.arange(3.0)), axis=-1).reshape(-1, 2) * SPACING
@@ -128,3 +137,61 @@ def test_who_is_back_is_away_no_more():
     later = PIXEL_GRID.copy()
     later[8] += 60.0
     assert absences.checked(sighting_of(later)).seen.all()
+
+
+def pressed(share: float) -> np.ndarray:
+    """The sheet drawn out by two fifths of a share along x, and narrowed."""
+    middle = PIXEL_GRID.mean(axis=0)
+    return middle + (PIXEL_GRID - middle) * [1.0 + 0.4 * share, 1.0 - 0.15 * share]
+
+
+def drawn(share: float) -> np.ndarray:
+    """What that does to discs: (a - b) / (a + b)."""
+    a, b = 1.0 + 0.4 * share, 1.0 - 0.15 * share
+    return np.full(18, (a - b) / (a + b), dtype=np.complex128)
+
+
+def test_a_sheet_that_strains_is_like_itself_and_a_blob_grown_together_with_a_marker_is_not():
+    neighbours = Neighbours(PIXEL_GRID, SPACING)
+    for share in np.linspace(0.0, 1.0, 10):
+        assert not np.any(neighbours.unlike(pressed(share), drawn(share)))
+    merged = drawn(1.0)
+    merged[8] += 0.12
+    for _ in range(20):  # however long it stays
+        way, stretch = neighbours.unlike(pressed(1.0), merged)
+        assert stretch[8] > 0.04
+        assert not way.any()
+        assert not np.delete(stretch, 8).any()
+    assert not np.any(neighbours.unlike(pressed(1.0), drawn(1.0)))
+
+
+def test_a_marker_that_was_grown_together_with_something_at_first_is_taken_as_it_is_when_free():
+    neighbours, merged = Neighbours(PIXEL_GRID, SPACING), drawn(0.0)
+    merged[8] = 0.3j
+    neighbours.unlike(PIXEL_GRID, merged)
+    assert not np.any(neighbours.unlike(PIXEL_GRID, drawn(0.0)))
+
+
+def test_a_marker_that_goes_where_no_neighbour_goes_is_another_spot():
+    neighbours, now = Neighbours(PIXEL_GRID, SPACING), PIXEL_GRID + np.array([20.0, 0.0])
+    assert not neighbours.strayed(now, PIXEL_GRID).any()
+    now[8] = PIXEL_GRID[8]
+    assert np.flatnonzero(neighbours.strayed(now, PIXEL_GRID)).tolist() == []  # it lags, but by less than allowed
+    still = PIXEL_GRID.copy()
+    still[8] += [0.38 * SPACING, 4.0]
+    assert np.flatnonzero(neighbours.strayed(still, PIXEL_GRID)).tolist() == [8]
+
+
+def test_a_marker_that_creeps_away_alone_is_doubted_by_its_way():
+    neighbours, now = Neighbours(PIXEL_GRID, SPACING), PIXEL_GRID.copy()
+    for _ in range(30):
+        way, _ = neighbours.unlike(now, drawn(0.0))
+        now[8, 0] += 1.5
+    assert 30.0 < way[8] < 45.0
+
+
+def test_of_a_single_row_no_strain_is_told():
+    row = PIXEL_GRID[:6]
+    neighbours = Neighbours(row, SPACING)
+    assert not np.any(neighbours.unlike(row + np.array([[3.0, 5.0]]), np.zeros(6, dtype=np.complex128)))
+    assert not neighbours.strayed(row + np.arange(6)[:, None] * 8.0, row).any()
