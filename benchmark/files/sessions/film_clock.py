@@ -4,7 +4,10 @@ Markers move as the tool goes in.
 Their mean way from where they rested, m(t), is fitted by a quadratic of the depth d (zero in air) at the film's
 instants shifted by tau, m = a + b d(t + tau) + c d(t + tau)^2; the tau of least squares is the film's clock. Its
 standard deviation is that of the curvature of the sum of squares, widened by how long residuals stay alike. A second
-minimum that is nearly as deep (a press like the one before) is not decided here: it is asked for.
+minimum that is nearly as deep (a press like the one before) is not decided here: it is asked for. Pictures that repeat
+the one before are left out: they are older than their time says. Where the motion up to an instant and from there on
+surely have another tau, or tau surely grows, the film's clock is broken (pictures are missing, or its rate is
+another): it is refused.
 """
 
 from __future__ import annotations
@@ -31,6 +34,17 @@ ENOUGH = 500
 """Pictures that tell so, of a film that has more."""
 LEAST_EXPLAINED = 0.9
 """Of the markers' variance that the best shift must explain."""
+PARTED = (0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8)
+"""Shares of the tool's way at which the film's clock may have jumped."""
+STEPS_OF_TWO = 25
+"""Of Gauss and Newton."""
+REPEATED = 0.1
+"""Of the usual way of the markers over two pictures: less from one to the next is noise of the same picture."""
+SURE = 10.0
+"""Standard deviations of the difference of two shifts beyond which they differ: in sound films of presses whose markers
+are no quadratic of the depth there are up to 7."""
+LEAST_FRAMES = 3.0
+"""Frames by which they must differ besides."""
 
 
 @dataclass(frozen=True)
@@ -43,15 +57,22 @@ class ClockShift:
 
 
 def marker_way(markers: MarkerTable) -> tuple[Array, Array]:
-    """Frames (f,) s and the mean way (f,) m of all markers from their median place in the first tenth of the frames."""
+    """Frames (f,) s and the mean way (f,) m of all markers from their median place in the first tenth of the frames.
+
+    Frames that repeat the one before are left out.
+    """
     frames = np.unique(markers.time)
-    ways = []
-    for number in np.unique(markers.marker):
-        mine = markers.marker == number
-        x, y = (np.interp(frames, markers.time[mine], values[mine]) for values in (markers.x, markers.y))
-        rest = max(3, len(frames) // 10)
-        ways.append(np.hypot(x - np.median(x[:rest]), y - np.median(y[:rest])))
-    return frames, np.mean(ways, axis=0)
+    numbers = [markers.marker == number for number in np.unique(markers.marker)]
+    places = np.array(
+        [[np.interp(frames, markers.time[mine], values[mine]) for values in (markers.x, markers.y)] for mine in numbers]
+    )
+    rest = max(3, len(frames) // 10)
+    way = np.hypot(*(places - np.median(places[:, :, :rest], axis=2, keepdims=True)).swapaxes(0, 1)).mean(axis=0)
+    fresh = np.ones(len(frames), dtype=bool)
+    if len(frames) > 2:
+        once, twice = (np.sqrt(((places[..., k:] - places[..., :-k]) ** 2).mean(axis=(0, 1))) for k in (1, 2))
+        fresh[1:] = once >= REPEATED * np.quantile(twice, 0.75)
+    return frames[fresh], way[fresh]
 
 
 def film_shift(name: str, table: TrialTable, markers: MarkerTable) -> ClockShift:
@@ -60,7 +81,7 @@ def film_shift(name: str, table: TrialTable, markers: MarkerTable) -> ClockShift
     Raises
     ------
     InputError
-        The markers do not follow the press, or two shifts are as likely.
+        The markers do not follow the press, two shifts are as likely, or parts of the motion have other ones.
     """
     frames, way = marker_way(markers)
     step = max(float(np.median(np.diff(frames))), float(np.median(np.diff(table.time)))) / STEPS
@@ -85,7 +106,49 @@ def film_shift(name: str, table: TrialTable, markers: MarkerTable) -> ClockShift
             f"trial {name}: the film fits the force shifted by {shifts[best]:.3f} s and by {rival[0]:.3f} s; allowed: "
             f'a film that shows the whole record, or marker times on the trial\'s clock (camera.clock = "shared").'
         )
-    return _refined(shifts, squares, best, len(frames), _alike(table, frames + shifts[best], way), explained)
+    found = _refined(shifts, squares, best, len(frames), _alike(table, frames + shifts[best], way), explained)
+    _refuse_broken(name, table, frames, way, found.shift)
+    return found
+
+
+def _refuse_broken(name: str, table: TrialTable, frames: Array, way: Array, shift: float) -> None:
+    """Refuse a film whose shift surely jumps at some instant, or grows evenly."""
+    depth = _depth(table, frames + shift)
+    moved = np.cumsum(np.abs(np.diff(depth, prepend=depth[0])))
+    lateness = [(moved >= share * moved[-1]).astype(np.float64) for share in PARTED]
+    lateness.append((frames - frames[0]) / (frames[-1] - frames[0]))
+    found = [_two_shifts(table, frames, way, shift, late) for late in lateness]
+    first, second, deviation = max(found, key=lambda each: abs(each[1] - each[0]) / max(each[2], 1e-12))
+    apart = abs(second - first)
+    if apart > SURE * deviation and apart > LEAST_FRAMES * float(np.median(np.diff(frames))):
+        raise InputError(
+            f"trial {name}: the film's clock does not run as the force's: the film's beginning is shifted by "
+            f"{first:.3f} s, its end by {second:.3f} s (standard deviation of the difference {deviation:.3f} s). "
+            "Pictures are missing between, or the film's rate is another than it says; allowed: a film with all its "
+            "pictures at its true rate, or tracks with their true times."
+        )
+
+
+def _two_shifts(table: TrialTable, frames: Array, way: Array, shift: float, late: Array) -> tuple[float, float, float]:
+    """Shifts where `late` (f,) is 0 and 1, with all between, and the standard deviation of their difference, s.
+
+    One quadratic of the depth is for all. By Gauss and Newton from a common shift, two frames a step at most; the
+    deviation is by what two shifts explain more than one.
+    """
+    shifts, most, squares = np.array([shift, shift]), 2.0 * float(np.median(np.diff(frames))), []
+    for _ in range(STEPS_OF_TWO):
+        at = frames + shifts[0] + (shifts[1] - shifts[0]) * late
+        depth, before, after = (_depth(table, at + aside) for aside in (0.0, -0.5 * most, 0.5 * most))
+        columns = np.column_stack([np.ones_like(depth), depth, depth**2])
+        curve = np.linalg.lstsq(columns, way, rcond=None)[0]
+        speed = (curve[1] * (after - before) + curve[2] * (after**2 - before**2)) / most
+        left = way - columns @ curve
+        squares.append((float(left @ left), *shifts))
+        whole = np.column_stack([columns, speed * (1.0 - late), speed * late])
+        shifts = shifts + np.clip(np.linalg.lstsq(whole, left, rcond=None)[0][3:], -most, most)
+    least, first, second = min(squares)
+    gain = (squares[0][0] - least) / max(least, 1e-300) * max(len(way) - 5, 1) / _stretch_alike(left)
+    return first, second, abs(second - first) / max(float(np.sqrt(gain)), 1e-9)
 
 
 def _refined(shifts: Array, squares: Array, best: int, count: int, alike: float, explained: float) -> ClockShift:
@@ -98,8 +161,13 @@ def _refined(shifts: Array, squares: Array, best: int, count: int, alike: float,
     return ClockShift(float(shifts[best]) + offset, float(np.sqrt(variance)), explained)
 
 
+def _depth(table: TrialTable, times: Array) -> Array:
+    """Depth in mm; in air, where nothing moves, 0."""
+    return np.asarray(1e3 * np.clip(np.interp(times, table.time, table.depth), 0.0, None))
+
+
 def _residual(table: TrialTable, times: Array, way: Array) -> Array:
-    depth = 1e3 * np.clip(np.interp(times, table.time, table.depth), 0.0, None)  # in air nothing moves
+    depth = _depth(table, times)
     columns = np.column_stack([np.ones_like(depth), depth, depth**2])
     return np.asarray(way - columns @ np.linalg.lstsq(columns, way, rcond=None)[0])
 
@@ -110,7 +178,10 @@ def _squares(table: TrialTable, times: Array, way: Array) -> float:
 
 def _alike(table: TrialTable, times: Array, way: Array) -> float:
     """How many frames residuals stay alike: (1 + r) / (1 - r) of their first autocorrelation, one at least."""
-    left = _residual(table, times, way)
+    return _stretch_alike(_residual(table, times, way))
+
+
+def _stretch_alike(left: Array) -> float:
     r = float(left[1:] @ left[:-1]) / max(float(left @ left), 1e-300)
     return max(1.0, (1.0 + r) / max(1.0 - r, 1e-3))
 

@@ -61,3 +61,31 @@ def test_a_film_off_the_clock_that_it_is_said_to_share_is_told() -> None:
     (said,) = doubtful_clocks("abcd", *zip(*films, strict=True))
     assert said.startswith("the markers follow the press at other times than their own: b (+0.5")
     assert said.count(" s)") == 1
+
+
+def at_frames(markers, chosen, times):
+    """The film with the frames `chosen` at other times."""
+    index = (9 * np.asarray(chosen)[:, None] + np.arange(9)).ravel()
+    return MarkerTable(np.repeat(times, 9), markers.marker[index], markers.x[index], markers.y[index])
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_film_with_a_gap_or_at_another_rate_is_refused_with_both_shifts(seed):
+    table, markers = trial_and_film(0.0, seed)
+    times = np.unique(markers.time)
+    count, middle = len(times), len(times) // 2
+    gap = [*range(middle - 40), *range(middle - 25, count)]
+    fast = [k for k in (round(each / 0.9) for each in range(count)) if k < count]
+    for chosen in (gap, fast):
+        with pytest.raises(InputError, match=r"beginning is shifted by .* s, its end by .*true rate"):
+            film_shift("a", table, at_frames(markers, chosen, times[: len(chosen)]))
+
+
+def test_pictures_that_repeat_the_one_before_are_left_out():
+    errors = []
+    for seed in range(4):
+        table, markers = trial_and_film(0.8, seed)
+        times = np.unique(markers.time)
+        doubled = at_frames(markers, np.arange(len(times)) // 2 * 2, times)
+        errors.append(film_shift("a", table, doubled).shift - 0.8)
+    assert abs(np.mean(errors)) < 0.004  # with them half a frame, 0.017 s
