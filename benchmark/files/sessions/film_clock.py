@@ -34,7 +34,7 @@ ENOUGH = 500
 """Pictures that tell so, of a film that has more."""
 LEAST_EXPLAINED = 0.9
 """Of the markers' variance that the best shift must explain."""
-PARTED = (0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8)
+PARTED = tuple(np.linspace(0.1, 0.9, 41).tolist())
 """Shares of the tool's way at which the film's clock may have jumped."""
 STEPS_OF_TWO = 25
 """Of Gauss and Newton."""
