@@ -57,6 +57,8 @@ class RayFan:
         Distances of the smoothed samples, pixels.
     paper_radius : float
         Mean distance of the samples of the paper, pixels.
+    offsets : ndarray of float32, shape (2, rays * samples)
+        The samples from the middle, x and y, pixels.
     """
 
     marker_radius: float
@@ -65,6 +67,7 @@ class RayFan:
     filters: Float32Array
     smooth_radii: FloatArray
     paper_radius: float
+    offsets: Float32Array
 
     @property
     def step(self) -> float:
@@ -89,13 +92,15 @@ def ray_fan(radius: float, spacing: float) -> RayFan:
     for column in range(smooth):
         filters[column : column + 2 * half + 1, column] = kernel / kernel.sum()
     filters[:ink, smooth], filters[-paper:, smooth + 1] = 1.0 / ink, 1.0 / paper
+    directions = np.stack([np.cos(angle), np.sin(angle)])
     return RayFan(
         marker_radius=radius,
-        directions=np.stack([np.cos(angle), np.sin(angle)]),
+        directions=directions,
         radii=radii,
         filters=filters,
         smooth_radii=radii[half : len(radii) - half],
         paper_radius=float(radii[-paper:].mean()),
+        offsets=(directions[:, :, None] * radii).reshape(2, -1).astype(np.float32),
     )
 
 
@@ -116,12 +121,11 @@ def sample(grey: Picture, centres: FloatArray, fan: RayFan) -> Float32Array:
     ndarray of float32, shape (m, rays, samples)
         Grey levels between pixels by bilinear interpolation; black outside the picture.
     """
-    offsets = (fan.directions[:, :, None] * fan.radii).reshape(2, -1).astype(np.float32)
     reach = float(fan.radii[-1])
     columns, rows = (_window(centres[:, axis], reach, grey.shape[1 - axis]) for axis in (0, 1))
     part = grey[rows[0] : rows[1], columns[0] : columns[1]].astype(np.float32)
     middles = (centres - (columns[0], rows[0])).astype(np.float32)
-    x, y = (middles[:, axis, None] + offsets[axis] for axis in (0, 1))
+    x, y = (middles[:, axis, None] + fan.offsets[axis] for axis in (0, 1))
     values = cv2.remap(part, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT)
     return np.asarray(values, dtype=np.float32).reshape(len(centres), -1, len(fan.radii))
 
@@ -198,7 +202,7 @@ def find_edges(profiles: Float32Array, fan: RayFan, tilt: FloatArray) -> Edges:
     if usual_paper.max(initial=0.0) > _WHITE:
         spread = np.maximum(spread, 1.4826 * _medians(np.abs(ink - usual_ink[:, None])))
     noise = _EDGE_WIDTH * spread / np.maximum(contrast, 1.0)
-    steepest, told = _steepest(filtered, at, (before, after), middle, fan)
+    steepest, told = _steepest(filtered, at, (before, after), middle, contrast, fan)
     steepest = np.where(there[:, ::2] & told, steepest - radius[:, ::2], 0.0)
     return Edges(np.where(there, radius, 0.0), there, contrast, seen_tilt, tilt_std, noise, steepest)
 
@@ -216,7 +220,12 @@ def _crossing(filtered: Float32Array, middle: Float32Array) -> tuple[IntArray, F
 
 
 def _steepest(
-    filtered: Float32Array, at: IntArray, beside: tuple[FloatArray, FloatArray], middle: Float32Array, fan: RayFan
+    filtered: Float32Array,
+    at: IntArray,
+    beside: tuple[FloatArray, FloatArray],
+    middle: Float32Array,
+    contrast: FloatArray,
+    fan: RayFan,
 ) -> tuple[FloatArray, NDArray[np.bool_]]:
     """How far from the middle every second profile rises most steeply, pixels, and whether it reaches beyond.
 
@@ -226,18 +235,19 @@ def _steepest(
     distance from the edge times their own distance, over the square of its width, which is the contrast over the
     greatest slope and the root of 2 pi.
     """
-    wide = max(1, round(_BESIDE / fan.step))
-    first = np.arange(0, filtered.size, filtered.shape[2]).reshape(at.shape)[:, ::2]
+    wide, last = max(1, round(_BESIDE / fan.step)), filtered.shape[2] - 3
+    first = np.arange(0, filtered.size, 2 * filtered.shape[2]).reshape(len(at), -1)
     at, before, after = at[:, ::2], beside[0][:, ::2], beside[1][:, ::2]
-    told = (at >= wide) & (at + wide < filtered.shape[2] - 3)
-    inner = filtered.take(first + np.maximum(at - wide, 0)) - middle[:, ::2]
-    outer = filtered.take(first + at + 1 + wide, mode="clip") - middle[:, ::2]
-    low, high = (np.maximum(rise, _LEAST_RISE).astype(np.float32) for rise in (before - inner, outer - after))
-    slope = np.maximum((outer - inner).mean(axis=1), _LEAST_RISE) / (fan.step * (2 * wide + 1))
-    contrast = (filtered[:, :, -1] - filtered[:, :, -2]).mean(axis=1)
+    inner, outer = at - wide, at + (1 + wide)
+    told = (inner >= 0) & (outer <= last)
+    levels = filtered.take(first + np.stack([np.maximum(inner, 0), np.minimum(outer, last)])) - middle[:, ::2]
+    rises = np.maximum(np.stack([before - levels[0], levels[1] - after]), _LEAST_RISE)
+    logs = np.log(rises.astype(np.float32))
+    slope = np.maximum((levels[1] - levels[0]).sum(axis=1) / at.shape[1], _LEAST_RISE) / (fan.step * (2 * wide + 1))
     square = (contrast / slope) ** 2 / (2.0 * np.pi)
-    shift = (square / (fan.step * (wide + 1)))[:, None] * np.log(high / low)
-    return fan.smooth_radii[at] + 0.5 * fan.step + np.clip(shift, -_FARTHEST, _FARTHEST), told
+    shift = (square / (fan.step * (wide + 1)))[:, None] * (logs[1] - logs[0])
+    shift = np.minimum(np.maximum(shift, -_FARTHEST), _FARTHEST)
+    return float(fan.smooth_radii[0]) + fan.step * (at + 0.5) + shift, told
 
 
 def _strangeness(paper: FloatArray) -> FloatArray:

@@ -106,7 +106,7 @@ class Outlines:
     @property
     def share(self) -> FloatArray:
         """Share of sound rays, shape (m,)."""
-        return np.asarray(self.sound.mean(axis=1))
+        return np.asarray(np.count_nonzero(self.sound, axis=1) / self.sound.shape[1])
 
 
 def outline_basis(fan: RayFan) -> FloatArray:

@@ -199,7 +199,9 @@ class MarkerEdges:
             look = replace(look, outlines=found, pixels=pixels)
         look, doubt = self._checked(look, which)
         points, radius = self._undistorted(look, which)
-        confidence = self._confidence(look, which) * confidence_left(doubt, radius)
+        confidence, error = self._confidence(look, which), _stated_error(look)
+        if doubt.any():
+            confidence, error = confidence * confidence_left(doubt, radius), np.hypot(error, np.sqrt(0.5) * doubt)
         confidence[~np.isfinite(points).all(axis=1)] = 0.0
         if searched:
             confidence[look.edges.noise > _UNEVEN * self._noise[which]] = 0.0
@@ -207,7 +209,6 @@ class MarkerEdges:
         whole = seen & (look.outlines.share > _WHOLE_SHARE)
         self._follow(look, which, seen & ~whole)
         self._learn(look, which, whole)
-        error = np.hypot(_stated_error(look), np.sqrt(0.5) * doubt)
         sighting = Sighting(points, look.pixels, radius, confidence, error)
         return sighting if seen.all() else sighting.kept(seen)
 
@@ -244,8 +245,10 @@ class MarkerEdges:
         look = self._pass(grey, starts, which, tilt)
         off = np.abs(look.pixels - starts).max(axis=1) > _RECENTRE * self._radius[which]
         other = _in_other_light(look.edges, tilt)
+        if passes == 1 or not (off | other).any():
+            return look
         again = np.flatnonzero((off | other) & (look.edges.there.mean(axis=1) > _HALF_SHARE))
-        if passes == 1 or not len(again):
+        if not len(again):
             return look
         light = np.where(other[:, None], look.edges.tilt, tilt)[again]
         return look.with_part(self._look(grey, look.pixels[again], which[again], light, passes - 1), again)
