@@ -64,8 +64,9 @@ _FAN_MARGIN, _FAN_SHARE, _NEW_FAN = 5.0, 1.5, 0.06
 are laid out anew where that radius is off by more than the last."""
 
 
-_SURE_LIGHT = 5.5
-"""So many standard deviations must the steepest places of the edges be beside the centroid to be taken in its stead."""
+_DOUBTED_LIGHT, _SURE_LIGHT = 4.0, 5.5
+"""So many standard deviations must the steepest places of the edges be beside the centroid for it to be doubted, and to
+be taken in its stead."""
 _LEFT = 0.5
 """Share of that correction that may be wrong."""
 _UNLIKE_NOISE, _UNLIKE_GROWTH, _UNLIKE_STRETCH, _UNLIKE_ASIDE = 6.0, 0.01, 0.08, 4.0
@@ -216,12 +217,14 @@ class MarkerEdges:
         """Correct for uneven light on the ink, and say how far each centroid may be off beside noise, pixels."""
         shift, deviation = light_shift(look.edges, look.outlines.sound, self._basis)
         lit = np.sqrt((shift * shift).sum(axis=1))
-        lit[lit < _SURE_LIGHT * deviation] = 0.0
-        if lit.any():
-            shift[lit == 0.0] = 0.0
+        lit[lit < _DOUBTED_LIGHT * deviation] = 0.0
+        sure = lit > _SURE_LIGHT * deviation
+        if sure.any():
+            lit[sure] *= _LEFT
+            shift[~sure] = 0.0
             radius = look.outlines.radius + shift @ self._fan.directions
             look = replace(look, outlines=replace(look.outlines, radius=radius), pixels=look.pixels + shift)
-        return look, np.hypot(_LEFT * lit, self._dents(look, which))
+        return look, np.hypot(lit, self._dents(look, which))
 
     def _dents(self, look: Look, which: IntArray) -> FloatArray:
         """How far centroids may be off as outlines are other than at first on opposite sides, pixels, (k,)."""
