@@ -64,9 +64,9 @@ _FAN_MARGIN, _FAN_SHARE, _NEW_FAN = 5.0, 1.5, 0.06
 are laid out anew where that radius is off by more than the last."""
 
 
-_DOUBTED_LIGHT, _SURE_LIGHT = 4.0, 5.5
+_DOUBTED_LIGHT, _SURE_LIGHT, _LEAST_LIGHT = 4.0, 5.5, 0.1
 """So many standard deviations must the steepest places of the edges be beside the centroid for it to be doubted, and to
-be taken in its stead."""
+be taken in its stead, and so many pixels: what a camera's JPEG moves them."""
 _LEFT = 0.5
 """Share of that correction that may be wrong."""
 _UNLIKE_NOISE, _UNLIKE_GROWTH, _UNLIKE_STRETCH, _UNLIKE_ASIDE = 6.0, 0.01, 0.08, 4.0
@@ -218,7 +218,7 @@ class MarkerEdges:
         shift, deviation = light_shift(look.edges, look.outlines.sound, self._basis)
         lit = np.sqrt((shift * shift).sum(axis=1))
         lit[lit < _DOUBTED_LIGHT * deviation] = 0.0
-        sure = lit > _SURE_LIGHT * deviation
+        sure = lit > np.maximum(_SURE_LIGHT * deviation, _LEAST_LIGHT)
         if sure.any():
             lit[sure] *= _LEFT
             shift[~sure] = 0.0
