@@ -84,6 +84,13 @@ def film_shift(name: str, table: TrialTable, markers: MarkerTable) -> ClockShift
         The markers do not follow the press, two shifts are as likely, or parts of the motion have other ones.
     """
     frames, way = marker_way(markers)
+    found = _one_shift(name, table, frames, way)
+    _refuse_broken(name, table, frames, way, found.shift)
+    return found
+
+
+def _one_shift(name: str, table: TrialTable, frames: Array, way: Array) -> ClockShift:
+    """The shift of all frames; raises InputError where there is none, or two are as likely."""
     step = max(float(np.median(np.diff(frames))), float(np.median(np.diff(table.time)))) / STEPS
     overlap = 0.5 * min(float(np.ptp(frames)), float(np.ptp(table.time)))
     shifts = np.arange(table.time[0] - frames[-1] + overlap, table.time[-1] - frames[0] - overlap, step)
@@ -106,9 +113,7 @@ def film_shift(name: str, table: TrialTable, markers: MarkerTable) -> ClockShift
             f"trial {name}: the film fits the force shifted by {shifts[best]:.3f} s and by {rival[0]:.3f} s; allowed: "
             f'a film that shows the whole record, or marker times on the trial\'s clock (camera.clock = "shared").'
         )
-    found = _refined(shifts, squares, best, len(frames), _alike(table, frames + shifts[best], way), explained)
-    _refuse_broken(name, table, frames, way, found.shift)
-    return found
+    return _refined(shifts, squares, best, len(frames), _alike(table, frames + shifts[best], way), explained)
 
 
 def _refuse_broken(name: str, table: TrialTable, frames: Array, way: Array, shift: float) -> None:
@@ -204,7 +209,7 @@ def doubtful_clocks(names: Sequence[str], tables: Sequence[TrialTable], films: S
         kept = np.isin(film.time, frames[:: len(frames) // ENOUGH + 1])
         columns = {key: getattr(film, key)[kept] for key in ("time", "marker", "x", "y")}
         try:
-            found = film_shift(name, table, replace(film, **columns))
+            found = _one_shift(name, table, *marker_way(replace(film, **columns)))
         except InputError:
             continue  # they do not move, or tell no time
         if abs(found.shift) > max(LATE, SURELY * found.deviation) and found.explained > CLOSELY:
