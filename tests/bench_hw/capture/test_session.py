@@ -248,6 +248,21 @@ def test_what_is_lost_is_said_after_each_trial(record, watcher):
     assert lost / whole == pytest.approx(0.2, abs=0.03)
 
 
+def test_datagrams_that_are_no_records_are_told_of(record, watcher, monkeypatch):
+    receive = RdtSocket.receive
+
+    def half(self):
+        datagrams = receive(self)
+        self.malformed += len(datagrams)
+        return datagrams
+
+    monkeypatch.setattr(RdtSocket, "receive", half)
+    seen = watcher()
+    record(progress=seen)
+    (said,) = (each for each in seen.said if "were no records" in each)
+    assert re.fullmatch(r"trial_001: \d{3,} datagrams of the force sensor were no records", said)
+
+
 def test_what_is_lost_while_nobody_reads_is_none_of_the_next_trial(record, session, watcher, monkeypatch):
     """A pause is longer than the socket's buffer holds: here, of a hundred datagrams at a time ten are kept."""
     receive = RdtSocket.receive

@@ -30,6 +30,13 @@ def test_volume(name):
     assert solid_geometry(cube(name, 2)).weight.sum() == pytest.approx(1.0, rel=1e-12)
 
 
+@pytest.mark.parametrize(("name", "share"), [("tet10", 1.0), ("hex27", 0.5)])
+def test_a_constant_pressure_may_leave_all_of_the_bulk_modulus_to_the_points(name, share):
+    mesh = cube(name, 1)
+    elements = equations_of(mesh, fem.LinearElastic(1.0, 0.3), np.tile(~mesh.base, (3, 1)), 10.0).elements
+    np.testing.assert_allclose(elements.point_modulus, share * elements.laws.bulk_modulus)
+
+
 def test_a_folded_element_is_refused():
     with pytest.raises(fem.FemError, match="is folded"):
         solid_geometry(cube("hex27", 2, bend=0.8))

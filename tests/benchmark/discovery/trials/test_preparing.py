@@ -149,7 +149,16 @@ def pull(time, depth, elastic):
     return elastic - 0.1 * gone
 
 
-@pytest.mark.parametrize(("force", "said"), [(guide(0.05), True), (guide(0.0), False), (drift, False), (pull, False)])
+def uneven(time, depth, elastic):
+    """Three times as much while the tool goes down as while it goes up: no friction, which is as large both ways."""
+    speed = np.round(np.gradient(depth, time), 6)
+    return elastic + 0.06 * (speed > 0.0) - 0.02 * (speed < 0.0)
+
+
+SAID = [(guide(0.05), True), (guide(0.0), False), (drift, False), (pull, False), (uneven, False)]
+
+
+@pytest.mark.parametrize(("force", "said"), SAID)
 def test_a_force_in_air_that_goes_with_the_direction_is_the_benchs_own(session_of, force, said):
     study = prepare(session_of(force=force, trials=5, speeds=(0.6e-3,), noise=0.002, seed=4), 100)
     found = [float(size) for text in study.warnings for size in re.findall(r"in air, the force is ([0-9.]+) N", text)]
