@@ -287,6 +287,7 @@ def nothing_computed(monkeypatch):
             ParameterWish(free=("youngs_modulus",)),
             "--free youngs_modulus: this specimen and set-up have no such number",
         ),
+        (ParameterWish(free=("silicone.density",)), "--free silicone.density: no force depends on it"),
         (ParameterWish(free=(), laws=("yeoh",)), "a law or a posterior need free parameters: give --free"),
         (ParameterWish(free=("silicon.relaxation",)), "--free silicon.relaxation: this specimen"),
         (ParameterWish(free=("tool.radios",)), r"--free tool.radios: .* tool.radius, tool.edge_radius, support.hole"),

@@ -167,7 +167,10 @@ def test_markers_in_another_unit_or_at_other_times_are_refused_by_file() -> None
     later.time[:] += 100.0
     with pytest.raises(InputError, match=r"0 of 60 pictures lie within it \(another clock\?"):
         check_markers(press(), later, CAMERA)
-    check_markers(press(), later, CAMERA.model_copy(update={"clock": "press"}))
+    own_clock = CAMERA.model_copy(update={"clock": "press"})
+    check_markers(press(), later, own_clock)
+    with pytest.raises(InputError, match=r"\(milliseconds\?\)"):
+        check_markers(press(), markers(clock=1000.0), own_clock)
     check_markers(press(), markers(pictures=3), CAMERA)
 
 
