@@ -6,6 +6,7 @@ import pytest
 
 from bench_hw.vision.camera import to_plane
 from bench_hw.vision.markers import MarkerEdges, detect_grid
+from bench_hw.vision.markers.radial import confidence_left
 
 EVERYONE = np.arange(18)
 
@@ -159,3 +160,8 @@ def test_sightings_can_be_hidden_and_joined(set_up):
     again = edges.look(renderer.frame(), grid.centres[[4]], np.array([4]))
     assert hidden.merged(again, np.array([4])).seen.all()
     assert not hidden.seen[4]
+
+
+def test_what_may_be_off_by_more_than_a_twentieth_of_the_radius_is_not_seen():
+    left = confidence_left(np.array([0.0, 0.3, 0.5, 0.51]), np.full(4, 10.0))
+    np.testing.assert_allclose(left, [1.0, np.exp(-1.0), np.exp(-5 / 3), 0.0])

@@ -56,6 +56,17 @@ def test_a_jump_below_half_the_spacing_is_linked(follow, renderer, share):
     assert error.max() < 0.1
 
 
+def test_a_like_spot_where_no_neighbours_way_leads_is_not_the_marker(follow, renderer):
+    """A third of the spacing away, where the marker is gone from one picture to the next, while the others rest."""
+    middles = [renderer.sheet.middles.copy() for _ in range(10)]
+    for moved in middles[4:]:
+        moved[8] += 0.35 * 8.5 * RIGHT
+    outcome, error = follow(middles)
+    assert np.isnan(error[4:, 8]).all()
+    assert np.isfinite(np.delete(error, 8, axis=1)).all()
+    assert "sightings are missing" in outcome.warnings[0]
+
+
 def test_a_knock_below_half_the_spacing_is_told(follow, renderer):
     still = np.zeros(2)
     knocked = [renderer.sheet.middles + (still if frame < 5 else 8.5 * np.array([0.15, 0.0])) for frame in range(12)]
