@@ -37,6 +37,8 @@ FINER = 1e-3
 that leaves contact counts with one of two parameters that act together and not with the other, which seems to part
 them; at this share no derivative of the catalogue's effects changes by 1e-4 of itself when it is ten times as fine.
 """
+JUMP = 2.0
+"""Times as large as by the usual step a fine derivative is where what it is of jumps, as a pull's force off none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -337,9 +339,17 @@ def finely(fitted: Fit) -> Fit:
         return fitted
     if fitted not in FINE:
         at = fitted.model.evaluated(fitted.vector, fitted.nuisance)
-        columns = fitted.model.columns(at, fitted.columns, FINER)
+        columns = without_jumps(fitted.model.columns(at, fitted.columns, FINER), fitted.columns)
         FINE[fitted] = replace(fitted, columns=columns, blocks=trial_blocks(fitted.model, columns, at))
     return FINE[fitted]
+
+
+def without_jumps(fine: TrialColumns, usual: TrialColumns) -> TrialColumns:
+    """Fine derivatives, but for the usual ones where a jump over the fine step would tell a number to nothing."""
+    sizes = [np.sqrt(np.sum([(each**2).sum(axis=0) for each in some.vector], axis=0)) for some in (fine, usual)]
+    jumps = sizes[0] > JUMP * sizes[1]
+    pairs = zip(fine.vector, usual.vector, strict=True)
+    return TrialColumns([np.where(jumps, by_usual, by_fine) for by_fine, by_usual in pairs], fine.nuisance)
 
 
 def settled(model: EffectModel, vector: Array, nuisance: Array) -> Array:

@@ -7,10 +7,11 @@ import pytest
 
 from benchmark.discovery.base.calibration import calibrate
 from benchmark.discovery.base.candidate_fit import fit_candidate, screened
-from benchmark.discovery.base.effect_model import EffectModel
+from benchmark.discovery.base.effect_model import EffectModel, without_jumps
 from benchmark.discovery.evidence.parameter_evidence import effect_estimates, told_together
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.physics import catalogue
+from benchmark.response.trials_model import TrialColumns
 from tests.benchmark.discovery.quick_session import PEAK, law
 
 GAP, SET = (next(e for e in catalogue() if e.slug == slug) for slug in ("contact_gap", "permanent_set"))
@@ -45,3 +46,12 @@ def test_presses_to_one_depth_tell_the_set_and_neither_its_share_nor_its_onset(s
     set_, low, high = (float(word) for word in re.findall(r"[0-9]\.[0-9]+", said))
     assert low < set_ < high < 1.05 * low
     assert set_ == pytest.approx(0.15 * (3.0 - 0.6), rel=0.05)
+
+
+def test_a_number_that_jumps_off_none_keeps_the_usual_derivative():
+    """A pull's force at none was told to 0.01 mN: the jump of a row's contact over a thousandth of the step."""
+    usual = TrialColumns([np.ones((3, 2)), np.ones((2, 2))], [])
+    fine = TrialColumns([np.full((3, 2), [1.2, 170.0]), np.full((2, 2), [0.9, 0.0])], [])
+    first, second = without_jumps(fine, usual).vector
+    np.testing.assert_array_equal(first, np.full((3, 2), [1.2, 1.0]))
+    np.testing.assert_array_equal(second, np.full((2, 2), [0.9, 1.0]))
