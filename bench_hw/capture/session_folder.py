@@ -106,10 +106,9 @@ class SessionFolder:
         return {key: value for key, value in self._session.items() if key != "trials"}
 
     def other_rig(self, order: CaptureOrder) -> str | None:
-        """Name of the rig that the session's last capture was made with, where it is another than this one's."""
-        logs = sorted(self.path.glob("capture*.json"), key=lambda path: path.stat().st_mtime)
-        name = _logged(logs[-1]).get("rig") if logs else None
-        return name if isinstance(name, str) and name != order.rig.rig.name else None
+        """Name of a rig that the session's captures were made with, where none was made with this one."""
+        names = sorted({str(_logged(path).get("rig", "")) for path in self.path.glob("capture*.json")} - {""})
+        return names[0] if names and order.rig.rig.name not in names else None
 
     def add_trial(self, file: Path, condition: str) -> None:
         """Add a trial to `session.toml`.
@@ -266,7 +265,8 @@ def _told_before(path: Path) -> dict[str, Any]:
     """What a session's log tells of its set-up where a fault ended its first trial; else nothing."""
     log = _logged(path)
     told, trials = log.get("session"), log.get("trials")
-    if not isinstance(told, dict) or not isinstance(trials, list) or not all(one.get("fault") for one in trials):
+    ended = isinstance(trials, list) and all(isinstance(one, dict) and one.get("fault") for one in trials)
+    if not ended or not isinstance(told, dict):
         return {}
     check_session(told, f"{path}, session")
     return told
