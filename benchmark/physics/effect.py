@@ -72,18 +72,26 @@ class TrialContext:
 class DepthRecord:
     """The depths (m,) in m at times (m,) in s of which rows are means, between the times (n + 1,) in s.
 
-    Of the means themselves no depth between them is known, and no slope in them.
+    Of the means themselves no depth between them is known, and no slope in them. The first `earlier` rows, and as many
+    depths, are of what the record has before the trial.
     """
 
     time: Array
     depth: Array
     borders: Array
+    earlier: int = 0
     _kept: dict[float, Array] = field(default_factory=dict, init=False, repr=False)
 
     @cached_property
     def interval(self) -> float:
         """Between the times, s, in the median."""
-        return float(np.median(np.diff(self.time)))
+        return float(np.median(np.diff(self.time[self.earlier :])))
+
+    @cached_property
+    def own(self) -> DepthRecord:
+        """Of the trial itself alone."""
+        first = self.earlier
+        return DepthRecord(self.time[first:], self.depth[first:], self.borders[first:])
 
     @cached_property
     def _integral(self) -> Array:
@@ -130,6 +138,7 @@ class Motion:
     """What the rig reports: time (n,) s, depth (n,) m, and the acceleration (n,) m/s2 of the tool.
 
     Where the rows are means, `record` has what they are means of, and the depth is that `late` seconds before them.
+    Rows of what happened before the trial come first, and are not read.
     """
 
     time: Array
@@ -145,6 +154,19 @@ class Motion:
             return replace(self, depth=np.interp(self.time - seconds, self.time, self.depth), late=late)
         change = self.record.means(late) - (self.record.means(self.late) if self.late else self.record.given)
         return replace(self, depth=self.depth + change, late=late)
+
+    @property
+    def earlier(self) -> int:
+        """Number of rows before the trial."""
+        return self.record.earlier if self.record is not None else 0
+
+    @property
+    def read(self) -> Motion:
+        """The rows of the trial itself."""
+        if self.record is None or not self.earlier:
+            return self
+        rows = slice(self.earlier, None)
+        return Motion(self.time[rows], self.depth[rows], self.acceleration[rows], self.record.own, self.late)
 
     @property
     def speed(self) -> Array:

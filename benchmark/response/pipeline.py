@@ -139,7 +139,7 @@ class TrialPipeline:
             for elastic, motion, (gain, _, _) in zip(elastics, moved, own, strict=True)
         ]
         seen = self._seen(elastics, moved, traces, added)
-        return [self._observed(readings, motion, added) for readings, motion in zip(seen, moved, strict=True)]
+        return [self._observed(readings, motion.read, added) for readings, motion in zip(seen, moved, strict=True)]
 
     def _observed(self, readings: Readings, motion: Motion, added: Sequence[Added]) -> Readings:
         """As sensor and camera report it."""
@@ -151,17 +151,20 @@ class TrialPipeline:
     def _seen(
         self, elastics: Sequence[Elastic], moved: Sequence[Motion], traces: Sequence[PressTrace], added: Sequence[Added]
     ) -> list[Readings]:
-        """The force, and the markers where there are any."""
+        """The force, and the markers where there are any, in the rows of the trial itself."""
         rest = self.around.markers
+        forces = [trace.force[motion.earlier :] for motion, trace in zip(moved, traces, strict=True)]
         if rest is None:
-            return [Readings(trace.force) for trace in traces]
+            return [Readings(force) for force in forces]
         presses = [_history(motion, trace) for motion, trace in zip(moved, traces, strict=True)]
-        faces = _lower_faces(elastics, [self._spread(press, added) for press in presses], rest)
+        spreads = [
+            _from(motion.earlier, self._spread(press, added)) for motion, press in zip(moved, presses, strict=True)
+        ]
         out = []
-        for press, (markers, sink) in zip(presses, faces, strict=True):
+        for force, (markers, sink) in zip(forces, _lower_faces(elastics, spreads, rest), strict=True):
             if self.distance is not None:
                 markers = markers / (1.0 - sink / self.distance)[..., None]
-            out.append(Readings(press.force, markers, sink))
+            out.append(Readings(force, markers, sink))
         return out
 
     def _spread(self, press: PressHistory, added: Sequence[Added]) -> LowerFaceMotion:
@@ -190,6 +193,12 @@ def _late_and_low(motion: Motion, shift: float, height: float) -> Motion:
 def _history(motion: Motion, trace: PressTrace) -> PressHistory:
     """A press worked out, with where the surface stood."""
     return PressHistory(motion.time, trace.depth, trace.surface, trace.force, trace.elastic, trace.touching)
+
+
+def _from(row: int, spread: LowerFaceMotion) -> LowerFaceMotion:
+    """The motion of the lower face from a row on."""
+    dent = None if spread.dent is None else (spread.dent[0][row:], spread.dent[1])
+    return replace(spread, depth=spread.depth[row:], passed=spread.passed[row:], dent=dent)
 
 
 def _lower_faces(

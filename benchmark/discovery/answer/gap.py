@@ -262,7 +262,7 @@ def traces(base: Fit, held: HeldOut) -> tuple[Trace, ...]:
         name = problem.study.conditions[trial.condition].name
         for channel, k in shown.items():
             curves = (measured[:, k], before[:, k], after[:, k], noise[:, k])
-            out.append(Trace(trial.name, name, channel, True, trial.motion.time, trial.motion.depth, *curves))
+            out.append(Trace(trial.name, name, channel, True, trial.motion.read.time, trial.motion.read.depth, *curves))
     return tuple(out)
 
 

@@ -145,7 +145,8 @@ def _knots_of(fitted: Fit, effect: Effect) -> Callable[[ConditionData], Array]:
     none = np.zeros_like(fitted.nuisance)  # a trial's own delay would part the way in from the way back
     by_itself = added_by(replace(fitted, model=alone, vector=vector, nuisance=none), effect.slug)
     trials = [
-        (t.motion, a / s) for t, a, s in zip(model.problem.trials, by_itself, model.problem.noise.scale, strict=True)
+        (t.motion.read, a / s)
+        for t, a, s in zip(model.problem.trials, by_itself, model.problem.noise.scale, strict=True)
     ]
     by_depth = (_goes_by(m.depth, np.sort(m.depth)[::NEIGHBOURS], added) for m, added in trials)
     if not effect.remembers and all(by_depth):

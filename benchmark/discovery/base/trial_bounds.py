@@ -48,7 +48,7 @@ def touch_range(problem: TrialsProblem, trial: TrialRef, noise: float) -> tuple[
     Where depth is counted from a touch that a force told, the tool had touched before: by the same depth and a share of
     the press, or the share of its peak that the force has reached before the touch, where that is more.
     """
-    resting, force, depth = _resting(problem, trial), trial.signals[:, 0], trial.motion.depth
+    resting, force, depth = _resting(problem, trial), trial.signals[:, 0], trial.motion.read.depth
     rest = float(np.median(force[resting])) if resting.any() else float(force[:2].min())
     highest = zero_range(problem, trial, noise)[1] if resting.any() else rest
     most = float(depth.max())
@@ -60,7 +60,7 @@ def touch_range(problem: TrialsProblem, trial: TrialRef, noise: float) -> tuple[
 
 def _resting(problem: TrialsProblem, trial: TrialRef) -> Array:
     """Mask (n,) of the rows in air before the first press."""
-    return np.asarray((problem.study.conditions[trial.condition].phase == APPROACH) & (trial.motion.depth <= 0.0))
+    return np.asarray((problem.study.conditions[trial.condition].phase == APPROACH) & (trial.motion.read.depth <= 0.0))
 
 
 def trial_values(problem: TrialsProblem, nuisance: Array) -> tuple[TrialValues, ...]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from benchmark.discovery import criteria
 from benchmark.discovery.base.setup_priors import is_modulus, is_setup
-from benchmark.discovery.trials.study import Study
+from benchmark.discovery.trials.study import ConditionData, Study
 from benchmark.physics import Motion
 from benchmark.response.elastic_table import ElasticTable
 from benchmark.response.force_curve import Array
@@ -169,13 +169,22 @@ def trial_refs(study: Study) -> tuple[TrialRef, ...]:
         for row in range(condition.size):
             signals = condition.signals[row]
             count = np.where(np.isfinite(signals), condition.count[row], 0.0)
-            motion = Motion(
-                condition.time[row], condition.depth[row], condition.acceleration[row], condition.records[row]
-            )
             known = np.nan_to_num(signals)
             place = (number, row, int(condition.numbers[row]), condition.trials[row])
-            out.append(TrialRef(*place, motion, known, count, *_between(motion.time, condition.frame_time[row])))
+            frames = _between(condition.time[row], condition.frame_time[row])
+            out.append(TrialRef(*place, _motion(condition, row), known, count, *frames))
     return tuple(out)
+
+
+def _motion(condition: ConditionData, row: int) -> Motion:
+    """Of a trial, with the rows that its record has before it."""
+    record = condition.records[row]
+    first = slice(record.earlier)
+    time = 0.5 * (record.borders[1:] + record.borders[:-1])[first]
+    own = (condition.time[row], condition.depth[row], condition.acceleration[row])
+    before = (time, record.given[first], np.zeros_like(time))
+    rows = [np.concatenate(parts) for parts in zip(before, own, strict=True)]
+    return Motion(rows[0], rows[1], rows[2], record)
 
 
 def _between(time: Array, frames: Array) -> tuple[NDArray[np.int64], Array]:

@@ -348,7 +348,7 @@ def delay(fitted: Fit, effect: Effect) -> float:
     added = rate = 0.0
     for trial, whole, part in zip(model.problem.trials, signals, more, strict=True):
         rows = trial.count[:, 0] > 0.0
-        count, force, time = trial.count[rows, 0], part[rows, 0], trial.motion.time[rows]
+        count, force, time = trial.count[rows, 0], part[rows, 0], trial.motion.read.time[rows]
         added += float(count @ force**2)
         rate += float(count @ np.gradient(whole[rows, 0] - force, time) ** 2)
     return math.sqrt(added / rate) if rate > 0.0 else math.inf

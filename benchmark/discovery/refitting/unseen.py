@@ -143,5 +143,11 @@ def traces(chosen: Fit, parts: Sequence[Split], rows: Rows) -> Iterator[Trace]:
         measured = np.where(trial.count > 0.0, trial.signals, np.nan)[:, 0]
         curves = (measured, trial.signals[:, 0] - before[at][:, 0], trial.signals[:, 0] - after[at][:, 0], noise)
         yield Trace(
-            trial.name, f"{part.kind}: {part.name}", "force_z", True, trial.motion.time, trial.motion.depth, *curves
+            trial.name,
+            f"{part.kind}: {part.name}",
+            "force_z",
+            True,
+            trial.motion.read.time,
+            trial.motion.read.depth,
+            *curves,
         )

@@ -14,12 +14,16 @@ from benchmark.discovery import criteria
 from benchmark.discovery.trials.segments import segments
 from benchmark.files import Session, Trial
 
+REMEMBERED, LEAST_REMEMBERED = 240, 3
+"""Presses before them that all presses of a record remember together, and that each does at least: of 24 all, of 80 and
+more three each."""
+
 
 def by_cycles(session: Session) -> tuple[Session, tuple[str, ...]]:
     """A session of one or two long records with each press as a trial, and what a reader must know of it.
 
-    Sessions with enough records, and records with too few presses, stay as they are: what happens from press to press
-    within a trial is evidence (softening, set), which is lost where presses count as trials that start alike.
+    Sessions with enough records, and records with too few presses, stay as they are. Each press keeps the record before
+    it: what tissue remembers of that (relaxation, softening, a set) is part of the press.
     """
     if len(session.trials) >= criteria.LEAST_TRIALS:
         return session, ()
@@ -29,8 +33,7 @@ def by_cycles(session: Session) -> tuple[Session, tuple[str, ...]]:
         return session, ()
     trials = tuple(each for trial in session.trials for each in long.get(trial.name, (trial,)))
     warnings = tuple(
-        f"record {name}: its {len(parts)} presses count as trials; what one press leaves to the next shows as a trend "
-        "over the trial number only"
+        f"record {name}: its {len(parts)} presses count as trials; each after the {_remembered(len(parts))} before"
         for name, parts in long.items()
     )
     return replace(session, trials=trials), warnings
@@ -39,6 +42,7 @@ def by_cycles(session: Session) -> tuple[Session, tuple[str, ...]]:
 def _presses(trial: Trial) -> Iterator[Trial]:
     """The presses of a record, numbered from 1, each from the middle of the rest before it to that after it."""
     marks = _borders(trial.table.time, trial.table.depth)
+    remembered = _remembered(len(marks) - 1)
     for number, (first, last) in enumerate(pairwise(marks), start=1):
         table, markers = _rows(trial.table, first, last), trial.markers
         start, end = table.time[0], table.time[-1]
@@ -46,8 +50,14 @@ def _presses(trial: Trial) -> Iterator[Trial]:
             trial,
             name=f"{trial.name} press {number}",
             table=table,
+            earlier=_rows(trial.table, marks[max(number - 1 - remembered, 0)], first) if first else None,
             markers=None if markers is None else _frames(markers, (markers.time >= start) & (markers.time <= end)),
         )
+
+
+def _remembered(presses: int) -> int:
+    """How many presses before it each press of a record remembers."""
+    return max(REMEMBERED // presses, LEAST_REMEMBERED)
 
 
 def _borders(time: NDArray[np.float64], depth: NDArray[np.float64]) -> list[int]:

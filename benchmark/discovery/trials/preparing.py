@@ -20,7 +20,9 @@ from benchmark.discovery.trials.rows import (
     bin_plan,
     binned,
     depth_step,
+    earlier_rows,
     marker_frames,
+    no_rows,
     record,
     resting_grid,
 )
@@ -241,9 +243,16 @@ def _raw(session: Session, trial: Trial, warnings: list[str]) -> RawTrial:
         raise InputError(f"{place}: the depth never rises by a tenth of its range; a press is needed.")
     seen = marker_frames(trial, session.camera) if session.camera is not None and _over_hole(trial) else None
     frames, markers = seen if seen is not None else (None, None)
-    return RawTrial(
-        trial, time, depth, force, acceleration(time, depth), frames, markers, pieces, steadied=depth is not read
-    )
+    rate, earlier = acceleration(time, depth), _before(trial)
+    return RawTrial(trial, time, depth, force, rate, frames, markers, pieces, depth is not read, earlier)
+
+
+def _before(trial: Trial) -> Array:
+    """(k, 2) times and depths of the record before a trial that is cut from it; none where a trial is all of it."""
+    if trial.earlier is None:
+        return no_rows()
+    time, depth, force = _decimated(trial.earlier.time, trial.earlier.depth, trial.earlier.force)
+    return earlier_rows(time, steadied(time, depth, force))
 
 
 def _decimated(*columns: Array) -> list[Array]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TypeAlias
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from benchmark.discovery import criteria
 from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.trials.marker_layout import Layout, grid
-from benchmark.discovery.trials.segments import FITTED, Segment, scatter_of
+from benchmark.discovery.trials.segments import FITTED, Segment, scatter_of, segments
 from benchmark.errors import InputError
 from benchmark.files import Camera, Trial
 from benchmark.physics import DepthRecord
@@ -30,8 +30,16 @@ NEAR = (-0.04, 0.08)
 SPAN = 0.008
 """Bins whose depth comes within `NEAR` (shares of the peak) of contact span no more than `SPAN` of it."""
 
+EARLIER_ROWS, LEAST_EARLIER = 240, 6
+"""Rows of what a record has before a trial, about, and of each of its segments at least."""
+
 BinPlan: TypeAlias = Sequence[tuple[int, Array]]
 """For each segment its number and the edges (0 to 1) of its bins."""
+
+
+def no_rows() -> Array:
+    """(0, 2): nothing before a trial."""
+    return np.empty((0, 2))
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +47,8 @@ class RawTrial:
     """One trial as measured, its repeated rates taken out: (n,) arrays; markers (f, m, 2) at the frames (f,) s.
 
     A marker that a frame missed is interpolated in time; one that was hardly seen is NaN. Where the depth's scatter was
-    the sensor's, and is taken out of it, `steadied` says so.
+    the sensor's, and is taken out of it, `steadied` says so. `earlier` (k, 2) has times and depths by which the record
+    goes on from its beginning to the trial, where that is cut from a longer one.
     """
 
     trial: Trial
@@ -51,6 +60,7 @@ class RawTrial:
     markers: Array | None
     pieces: tuple[Segment, ...]
     steadied: bool = False
+    earlier: Array = field(default_factory=no_rows)
 
 
 def bin_sizes(rows: int, target: int) -> list[int]:
@@ -235,7 +245,22 @@ def record(raw: RawTrial, plan: BinPlan, begin: float) -> DepthRecord:
     """
     whole = raw.trial.table
     kept = whole if whole.time.size <= MOST_RECORD and not raw.steadied else raw
-    return DepthRecord(kept.time - begin, kept.depth, _edges(raw, plan) - begin)
+    before, deep = raw.earlier.T
+    halfway = 0.5 * (before[1:] + before[:-1])
+    time, depth = np.concatenate([before, kept.time]), np.concatenate([deep, kept.depth])
+    borders = np.concatenate([2.0 * before[:1] - halfway[:1], halfway, _edges(raw, plan)])
+    return DepthRecord(time - begin, depth, borders - begin, before.size)
+
+
+def earlier_rows(time: Array, depth: Array) -> Array:
+    """(k, 2) times and mean depths of a record (n,) in few bins: its turning points, and like parts between them."""
+    pieces = segments(time, depth)
+    inner = max(LEAST_EARLIER, EARLIER_ROWS // max(len(pieces), 1)) - 2
+    edges = [np.linspace(piece.first + 1, max(piece.last - 1, piece.first + 1), inner + 1) for piece in pieces]
+    ends = [np.array([piece.first, piece.last]) for piece in pieces]
+    marks = np.unique(np.round(np.concatenate([*edges, *ends, [0, time.size]])).astype(int))
+    sums = np.add.reduceat(np.column_stack([time, depth]), marks[:-1])
+    return np.asarray(sums / np.diff(marks)[:, None])
 
 
 def _edges(raw: RawTrial, plan: BinPlan) -> Array:

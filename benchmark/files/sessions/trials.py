@@ -49,6 +49,8 @@ class Trial:
         A video of them, to be tracked.
     height : float or None
         Of the specimen that it pressed, m; None where that is the session's.
+    earlier : TrialTable or None
+        Of a press that is cut from a longer record, the record before it.
     """
 
     name: str
@@ -61,6 +63,7 @@ class Trial:
     markers_path: Path | None = None
     film: Path | None = None
     height: float | None = None
+    earlier: TrialTable | None = None
 
 
 def trial_paths(

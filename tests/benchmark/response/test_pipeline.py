@@ -198,3 +198,36 @@ def test_an_effect_that_moves_each_trials_face_otherwise_is_followed_trial_by_tr
     together = pipeline.of_several([sheet] * 3, values, motions, [(1.0, 0.0, 0.0)] * 3)
     for motion, found in zip(motions, together, strict=True):
         np.testing.assert_allclose(found.markers, pipeline.readings(sheet, values, motion).markers, rtol=1e-14)
+
+
+REMEMBERED = {
+    "viscoelastic_relaxation": {"g_1": 0.3, "tau_1": 2.0},
+    "stress_softening": {"softening": 0.4, "softening_width": 0.5},
+    "permanent_set": {"permanent_set": 0.2, "permanent_set_onset": 0.0, "marker_share": 0.5},
+    "dry_friction": {"friction_force": 0.1},
+    "backlash": {"width": 2e-4, "side": 0.0},
+    "machine_compliance": {"compliance": 1e-4},
+    "viscous_damping": {"damping_time": 0.05, "drag": 0.0, "drag_growth": 0.0, "power": 1.0},
+    "force_drift": {"rate": 0.01, "tau": 1e5},
+}
+
+
+@pytest.mark.parametrize("slug", REMEMBERED)
+@pytest.mark.parametrize("markers", [None, np.array([[4e-3, 0.0], [0.0, 7e-3]])])
+def test_a_press_cut_from_a_record_remembers_what_was_before_it(slug, markers):
+    effect, raw, first = BY_SLUG[slug], np.arange(0.0, 3.001, 0.001), 40
+    values = {p.name: p.start[0] for p in effect.description.parameters} | REMEMBERED[slug]
+    borders = 0.98 * BORDERS
+    whole = DepthRecord(raw, 1e-3 * (np.exp(-raw) * 2.0 - np.cos(2.0 * np.pi * raw)), borders)
+    after = DepthRecord(raw, whole.depth, borders, first)
+    pipeline = TrialPipeline(replace(AROUND, markers=markers), (effect,), 0.2)
+
+    def read(record):
+        motion = Motion(0.5 * (borders[1:] + borders[:-1]), record.given, np.zeros(60), record)
+        return pipeline.readings(Sheet(), {slug: values}, motion, 1.1, 2e-4, 1e-5)
+
+    long, cut = read(whole), read(after)
+    drifted = 0.01 * 0.049 * first if slug == "force_drift" else 0.0  # a drift counts from the trial's own beginning
+    np.testing.assert_allclose(cut.force, long.force[first:] - drifted, rtol=1e-9, atol=1e-6)
+    if markers is not None:
+        np.testing.assert_allclose(cut.markers, long.markers[first:], rtol=1e-12)

@@ -24,7 +24,7 @@ from benchmark.discovery.criteria import Settings
 from benchmark.discovery.detection.disagreement import shared_misfit
 from benchmark.discovery.discovery_result import ChannelGap
 from benchmark.discovery.trials.preparing import prepare
-from benchmark.physics import catalogue
+from benchmark.physics import Motion, catalogue
 
 
 @pytest.mark.parametrize(
@@ -74,7 +74,7 @@ def measured(residuals, conditions, counts=None):
             condition=condition,
             signals=np.full(counts.shape, 5.0),
             count=counts,
-            motion=SimpleNamespace(time=np.arange(len(counts)), depth=np.zeros(len(counts))),
+            motion=Motion(np.arange(len(counts)), np.zeros(len(counts)), np.zeros(len(counts))),
         )
         for k, condition in enumerate(conditions)
     )

@@ -25,7 +25,7 @@ from benchmark.discovery.evidence.gains import (
 )
 from benchmark.discovery.evidence.parameter_evidence import delay, material, resolved, seen
 from benchmark.discovery.trials.preparing import prepare
-from benchmark.physics import TrialContext, catalogue
+from benchmark.physics import Motion, TrialContext, catalogue
 from benchmark.response.least_squares import descend
 
 ONE = np.zeros(8, dtype=int)
@@ -150,7 +150,7 @@ def test_a_row_in_which_no_sample_fell_tells_of_no_delay(monkeypatch):
     elastic, count = 3.0 * time, np.ones((22, 1))
     elastic[11], count[11] = elastic[11] + 0.01, 0.0
     damped = np.full((22, 1), 0.02 * 3.0)
-    trial = SimpleNamespace(count=count, motion=SimpleNamespace(time=time))
+    trial = SimpleNamespace(count=count, motion=Motion(time, time, time))
     model = SimpleNamespace(
         signals=lambda vector, nuisance: [elastic[:, None] + damped], problem=SimpleNamespace(trials=[trial])
     )

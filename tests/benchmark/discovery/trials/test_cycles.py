@@ -43,6 +43,10 @@ def test_each_press_of_a_long_record_is_a_trial_and_no_row_is_lost(session) -> N
     assert all(trial.table.depth.max() == pytest.approx(3e-3, abs=1e-4) for trial in split.trials)
     assert all(trial.table.depth[0] < 0.0 for trial in split.trials)
     assert "8 presses count as trials" in said[0]
+    assert split.trials[0].earlier is None
+    before = split.trials[3].earlier
+    np.testing.assert_array_equal(before.force, rows[: before.force.size])
+    assert before.time[-1] < split.trials[3].table.time[0] == made.trials[0].table.time[before.time.size]
 
 
 def test_presses_are_compared_and_what_one_leaves_to_the_next_stays_in_their_order(session) -> None:

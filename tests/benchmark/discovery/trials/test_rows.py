@@ -5,7 +5,16 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from benchmark.discovery.trials.rows import acceleration, depth_step, frame_means, marker_frames, record
+from benchmark.discovery.trials.rows import (
+    EARLIER_ROWS,
+    acceleration,
+    depth_step,
+    earlier_rows,
+    frame_means,
+    marker_frames,
+    no_rows,
+    record,
+)
 from benchmark.errors import InputError
 from benchmark.files import Camera
 
@@ -62,7 +71,7 @@ def test_a_record_is_whole_unless_it_is_very_long(rows, kept):
     whole = SimpleNamespace(table=SimpleNamespace(time=np.arange(float(rows)), depth=np.arange(float(rows))))
     few = np.array([10.0, 20.0, 30.0, 40.0])
     pieces = (SimpleNamespace(first=0, last=4),)
-    raw = SimpleNamespace(trial=whole, time=few, depth=few, pieces=pieces, steadied=False)
+    raw = SimpleNamespace(trial=whole, time=few, depth=few, pieces=pieces, steadied=False, earlier=no_rows())
     made = record(raw, [(0, np.array([0.0, 0.5, 1.0]))], 10.0)
     assert made.time.size == made.depth.size == kept
     assert made.borders.tolist() == [-5.0, 15.0, 35.0]
@@ -72,5 +81,38 @@ def test_a_record_that_scatters_is_not_kept():
     whole = SimpleNamespace(table=SimpleNamespace(time=np.arange(9.0), depth=np.arange(9.0)))
     few = np.array([10.0, 20.0, 30.0, 40.0])
     pieces = (SimpleNamespace(first=0, last=4),)
-    raw = SimpleNamespace(trial=whole, time=few, depth=few, pieces=pieces, steadied=True)
+    raw = SimpleNamespace(trial=whole, time=few, depth=few, pieces=pieces, steadied=True, earlier=no_rows())
     assert record(raw, [(0, np.array([0.0, 0.5, 1.0]))], 10.0).depth.tolist() == few.tolist()
+
+
+def test_what_a_record_has_before_a_trial_comes_first_and_joins_it():
+    whole = SimpleNamespace(table=SimpleNamespace(time=np.arange(20.0, 60.0), depth=np.arange(40.0)))
+    few = np.array([20.0, 30.0, 40.0, 50.0])
+    earlier = np.array([[0.0, 1.0], [10.0, 2.0], [14.0, 3.0]])
+    pieces = (SimpleNamespace(first=0, last=4),)
+    raw = SimpleNamespace(trial=whole, time=few, depth=few, pieces=pieces, steadied=True, earlier=earlier)
+    made = record(raw, [(0, np.array([0.0, 0.5, 1.0]))], 20.0)
+    assert made.earlier == 3
+    assert made.borders.tolist() == [-25.0, -15.0, -8.0, -5.0, 15.0, 35.0]
+    assert made.depth.tolist() == [1.0, 2.0, 3.0, *few]
+    assert made.interval == 10.0
+    assert made.own.borders.tolist() == [-5.0, 15.0, 35.0]
+    assert made.own.depth.tolist() == few.tolist()
+
+
+@pytest.mark.parametrize("presses", [1, 4, 15])
+def test_few_rows_of_the_record_before_a_trial_keep_its_turns_and_its_memory(presses):
+    """An exponential memory of the depth over the few rows against that over all."""
+    knots, depth = [0.0], [-0.3]
+    for _ in range(presses):
+        knots += (knots[-1] + np.cumsum([1.0, 1.5, 0.6, 1.5])).tolist()
+        depth += [-0.3, 3.0, 3.0, -0.3]
+    time = np.arange(0.0, knots[-1] + 0.5, 0.01)
+    way = np.interp(time, knots, depth)
+    before = earlier_rows(time, way)
+    assert len(before) <= EARLIER_ROWS + 6 * 4 * presses
+    assert before[:, 1].max() == way.max()
+    kept = np.interp(time, *before.T)
+    for memory in (0.5, 3.0, 20.0):
+        fading = np.exp((time - time[-1]) / memory)
+        assert np.trapezoid(fading * kept, time) == pytest.approx(np.trapezoid(fading * way, time), abs=0.003 * memory)
