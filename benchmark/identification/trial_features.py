@@ -92,8 +92,9 @@ def contact_range(depth: Array, force: Array) -> ContactRange:
     Contact has begun at the latest where the force has left its level at the least depth by 1 % of its rise
     and six standard deviations of its noise, for the last time before the largest force; by 15 % where it
     rises steadily up to there, for it may have drifted in the air. It began at the earliest as far above the
-    first of these as the deepest row lies below it, and no more than a tenth of the travel above the least
-    depth. The force at the least depth is its median there, within twice the first margin.
+    row before the first of these as the deepest row lies below it (a weight that is put on within one row has
+    the whole press between the two), and no more than a tenth of the travel above the least depth. The force
+    at the least depth is its median there, within twice the first margin.
 
     Parameters
     ----------
@@ -107,8 +108,8 @@ def contact_range(depth: Array, force: Array) -> ContactRange:
     margin = max(NOISES * sample_noise(force), RISEN * rise)
     left = _left(calm[:peak], level + margin)
     late = _left(calm[:peak], level + max(margin, LATEST * rise)) if _steady(calm[:left], margin) else left
-    risen = float(depth[left]) if left else float(depth.min())
-    low = max(float(depth.min()) - 0.1 * travel(depth), 2.0 * risen - float(depth.max()))
+    before, risen = (float(depth[left - 1]), float(depth[left])) if left else (float(depth.min()),) * 2
+    low = max(float(depth.min()) - 0.1 * travel(depth), 2.0 * before - float(depth.max()))
     high = max(risen, float(depth[late]) if late else risen, low + 1e-3 * travel(depth))
     margin = max(margin, np.finfo(float).tiny)
     return ContactRange(low, high, float(np.median(depth[shallow])), level - 2.0 * margin, level + 2.0 * margin)
@@ -174,9 +175,9 @@ def _ratio(above: Array, below: Array) -> Array:
 def evidence_of(shape: Array, force: Array) -> float:
     """Return t of the slope of force (n,) over shape (n,) with AR(1) noise (Cochrane and Orcutt, JASA 44:32).
 
-    0 where the shape does not vary, infinite where it explains the force without a residual.
+    0 where the shape or the force does not vary, infinite where it explains the force without a residual.
     """
-    if np.ptp(shape) == 0.0:
+    if np.ptp(shape) == 0.0 or np.ptp(force) == 0.0:
         return 0.0
     columns = np.column_stack((shape, np.ones_like(shape), force))
     fitted, *_ = np.linalg.lstsq(columns[:, :2], force)

@@ -17,6 +17,7 @@ from benchmark.files.schema import validated
 from benchmark.files.sessions.fit_table import FitTable
 from benchmark.files.sessions.session_folder import SESSION_FILE
 from benchmark.files.sources import Source, read_toml
+from benchmark.identification.parameters.fit_problem import FitProblem
 from benchmark.identification.parameters.free_parameters import (
     COMMON,
     EDGE_RADIUS,
@@ -41,7 +42,7 @@ from benchmark.identification.parameters.session_problem import (
     check_wish,
 )
 from benchmark.identification.pooling import widened
-from benchmark.identification.trial_data import TrialData
+from benchmark.identification.trial_data import FittingError, TrialData
 from benchmark.identification.trial_fit import fit_trial
 from benchmark.response.force_curve import ForceCurve
 from benchmark.response.least_squares import least_squares
@@ -269,22 +270,28 @@ def with_setup(found: FittedSession, exact: tuple[str, ...], listener: Listener)
     try:
         made = assembled(_bases(found), FitTable(free=(COMMON,), exact=exact))
         _, presses = followed(made.problem, made.problem.start)
-    except (InputError, SolverError) as error:
+        shares = _setup_shares(found, made.problem, presses)
+    except (InputError, SolverError, FittingError) as error:
         said = f"how far the set-up as told may move the stiffness was not worked out: {error}"
         return replace(found, warnings=(*found.warnings, said))
-    told = {trial.key: trial for trial in found.trials}
-    pairs = [(told[trial.data.key], presses[trial.press]) for trial in made.problem.trials]
-    shares: dict[str, float] = {}
-    for number, one in enumerate(made.problem.parameters):
-        if one.told and one.prior is not None:
-            moved = [_moved(found, trial, press, number) for trial, press in pairs]
-            share = one.prior.deviation * math.fsum(moved) / len(moved)
-            shares[one.key] = math.hypot(shares.get(one.key, 0.0), share)
     if not shares:
         return found
     wide = widened(found.fit.stiffness, shares)
     notes = (*found.fit.notes, f"the wider interval has {wide.method}")
     return replace(found, fit=replace(found.fit, with_setup=wide, notes=notes))
+
+
+def _setup_shares(found: FittedSession, problem: FitProblem, presses: Sequence[PressSurrogate]) -> dict[str, float]:
+    """By how much the logarithm of the stiffness goes with the uncertainty of each key of the set-up that was told."""
+    told = {trial.key: trial for trial in found.trials}
+    pairs = [(told[trial.data.key], presses[trial.press]) for trial in problem.trials]
+    shares: dict[str, float] = {}
+    for number, one in enumerate(problem.parameters):
+        if one.told and one.prior is not None:
+            moved = [_moved(found, trial, press, number) for trial, press in pairs]
+            share = one.prior.deviation * math.fsum(moved) / len(moved)
+            shares[one.key] = math.hypot(shares.get(one.key, 0.0), share)
+    return shares
 
 
 def _moved(found: FittedSession, trial: TrialData, press: PressSurrogate, number: int) -> float:

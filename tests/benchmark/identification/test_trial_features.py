@@ -15,6 +15,7 @@ from benchmark.identification.trial_features import (
     largest_decay,
     sample_noise,
 )
+from benchmark.identification.trial_fit import fit_trial
 
 
 @pytest.mark.parametrize("onset", [-4e-4, 0.0, 3e-4, 1e-3])
@@ -38,6 +39,20 @@ def test_of_a_ramp_from_the_touch_and_a_long_hold_the_ramp_is_not_taken_for_air(
     assert allowed.rest_low < 0.0 < allowed.rest_high
     held = replace(made, time=0.035 * np.arange(depth.size), depth=depth, force=force)
     assert find_start(held, allowed).stiffness == pytest.approx(1.0, rel=0.02)
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.002])
+def test_weights_that_are_put_on_within_one_row_leave_the_touch_free(trial, noise):
+    """The first loaded row was taken for the touch: four weights on 20 kPa were fitted with 790 kPa."""
+    made = trial(noise=noise)
+    depth = np.repeat([0.0, *np.linspace(0.25, 1.0, 4)], 40) * made.depth.max()
+    force = made.curve(depth) + noise * made.force.max() * np.random.default_rng(5).normal(size=depth.size)
+    allowed = contact_range(depth, force)
+    assert allowed.low < 0.0 < allowed.high
+    weighed = replace(made, time=0.05 * np.arange(depth.size), depth=depth, force=force)
+    found = find_start(weighed, allowed)
+    assert found.stiffness == pytest.approx(1.0, rel=0.05)
+    assert fit_trial(weighed).log_stiffness == pytest.approx(0.0, abs=0.01)
 
 
 def test_quiet_data_bound_the_onset_tightly(trial):
@@ -90,6 +105,13 @@ def test_a_walk_of_the_force_is_no_rise(ar1, rho):
     generator = np.random.default_rng(5)
     depth = np.linspace(0.0, 5e-3, 160)
     assert max(evidence_of_rise(depth, ar1(generator, 160, rho)) for _ in range(300)) < 5.0
+
+
+def test_a_force_that_never_changes_is_no_contact():
+    """A dead weight from the first row on: its creep was fitted with 6e-15 kPa."""
+    depth = 1e-3 * (1.0 - np.exp(-np.linspace(0.0, 5.0, 400)))
+    assert evidence_of(depth, np.full(400, 0.05)) == 0.0
+    assert evidence_of_rise(depth, np.full(400, 0.05)) == 0.0
 
 
 def test_one_count_of_a_coarse_sensor_is_no_rise():
