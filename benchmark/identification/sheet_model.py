@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 
 from benchmark.identification.trial_data import TrialData
 from benchmark.identification.trial_features import contact_range
 from benchmark.response.force_curve import Array
 from benchmark.response.ramp_table import RampTable
 from benchmark.response.setup_change import THICKNESS
+from wavemodel.integrators.scan import decaying_sum
 
 LEAST_REST = 3
 """Frames with the tool in the air that a rest position is averaged over; else as many from the start."""
@@ -72,10 +72,6 @@ def filmed_trial(trial: TrialData, film: Film) -> FilmedTrial | None:
     return FilmedTrial(trial, depth, places[:, seen], np.asarray(rest))
 
 
-LEAST_GRID = 400
-"""Points of the even grid on which a history is relaxed, at least."""
-
-
 @dataclass(frozen=True)
 class Relaxation:
     """A force under a depth that is held falls by the share g, with the time tau (s)."""
@@ -90,7 +86,7 @@ NONE = Relaxation(0.0, 1.0)
 def relaxed(time: Array, elastic: Array, relaxation: Relaxation) -> Array:
     """Force (n,) N of a history of the elastic force: F - g (F - int e^(-(t - s) / tau) dF).
 
-    Exact for a force that is linear between the points of an even grid as fine as the mean step.
+    Exact for an elastic force that is linear between the rows.
 
     Parameters
     ----------
@@ -102,14 +98,10 @@ def relaxed(time: Array, elastic: Array, relaxation: Relaxation) -> Array:
     """
     if relaxation.share == 0.0:
         return elastic
-    grid = np.linspace(time[0], time[-1], max(len(time), LEAST_GRID))
-    even = np.interp(grid, time, elastic)
-    keep = np.exp(-(grid[1] - grid[0]) / relaxation.tau)
-    rises = np.diff(even, prepend=even[0])
-    gain = relaxation.tau / (grid[1] - grid[0]) * (1.0 - keep)
-    left = even[0] * np.exp(-(grid - grid[0]) / relaxation.tau)
-    remembered = scipy.signal.lfilter([gain], [1.0, -keep], rises) + left
-    return np.asarray(elastic - relaxation.share * (elastic - np.interp(time, grid, remembered)))
+    passed = np.diff(time, prepend=time[0]) / relaxation.tau
+    part = np.divide(-np.expm1(-passed), passed, out=np.ones_like(passed), where=passed > 0.0)
+    remembered = decaying_sum(passed, part * np.diff(elastic, prepend=elastic[0]), elastic[0])
+    return np.asarray(elastic - relaxation.share * (elastic - remembered))
 
 
 @dataclass(frozen=True)
