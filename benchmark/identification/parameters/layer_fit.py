@@ -32,7 +32,7 @@ from benchmark.response.force_curve import Array
 from benchmark.response.least_squares import Search, TrialsFit, least_squares, scaled_inverse
 from benchmark.response.noise import whitener
 
-FIRST_NOISE, FIRST_MEMORY = 0.01, 0.6
+FIRST_NOISE, FIRST_MEMORY = 0.01, 0.0
 FIRST_FILM_NOISE = 1e-5
 """m."""
 USUAL_SCATTER = 0.015
