@@ -127,12 +127,13 @@ def divider_of(rate: int) -> int:
     return INTERNAL_RATE // rate
 
 
-_HARMLESS = Status.ERROR | Status.LATCH
+HARMLESS = (Status.HEALTHY, Status.LATCH, Status.LATCH_ONLY)
+"""Every status word that is no fault; the error bit by itself is one, whose cause the box does not name."""
 
 
 def is_fault(status: int) -> bool:
     """Tell whether a status word says more than "a threshold was crossed once"."""
-    return bool(status & ~_HARMLESS)
+    return status not in HARMLESS
 
 
 def is_saturated(status: int) -> bool:
@@ -143,8 +144,9 @@ def is_saturated(status: int) -> bool:
 def describe(status: int) -> str:
     """Say in words what a status word means."""
     named = [text for bit, text in _BITS.items() if status >> bit & 1]
-    other = status & ~_HARMLESS & ~sum(1 << bit for bit in _BITS)
-    return ", ".join(named + ([f"other bits {other:#x}"] if other else [])) or "healthy"
+    other = status & ~Status.ERROR & ~sum(1 << bit for bit in _BITS)
+    named += [f"other bits {other:#x}"] if other else []
+    return ", ".join(named) or ("an error whose cause is not named" if status & Status.ERROR else "healthy")
 
 
 class SequenceTracker:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bench_hw.devices.rdt import Status, describe
+from bench_hw.devices.rdt import HARMLESS, Status, describe
 from bench_hw.trial_file.reading import TrialContents, read_contents, trial_rows
 from bench_hw.trial_file.sequence import SHORTEST_GAP, check_sequence, longest_allowed, usual_interval
 
@@ -270,9 +270,8 @@ def _faults(contents: TrialContents) -> Iterator[str]:
 
 def _sensor_faults(contents: TrialContents) -> Iterator[str]:
     force = contents.force
-    bad = force.status & ~Status.LATCH_ONLY
-    for status in np.unique(bad[bad != 0]).tolist():
-        rows = np.flatnonzero(bad == status)
+    for status in np.unique(force.status[~np.isin(force.status, HARMLESS)]).tolist():
+        rows = np.flatnonzero(force.status == status)
         first = force.time[rows[0]]
         yield f"force sensor: {describe(status)} in {len(rows)} rows, first at {first:.3f} s"
 

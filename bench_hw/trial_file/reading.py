@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bench_hw.devices.rdt import Status
+from bench_hw.devices.rdt import HARMLESS
 from bench_hw.errors import TrialFileError
 from bench_hw.tables import MINIMUM_ROWS, TrialTable
 from bench_hw.tables.columns import LARGEST
@@ -305,7 +305,7 @@ def press_force(force: ForceColumns, axis: PressAxis) -> FloatArray:
 def usable_rows(force: ForceColumns) -> NDArray[np.bool_]:
     """Say which samples are measurements: in order, healthy, finite, later than every one before; shape (n,)."""
     finite = np.isfinite(force.force).all(axis=1) & np.isfinite(force.torque).all(axis=1)
-    healthy = (force.status & ~Status.LATCH_ONLY) == 0
+    healthy = np.isin(force.status, HARMLESS)
     usable = check_sequence(force.rdt_sequence, force.ft_sequence).in_order & finite & healthy
     return _and_later(usable, force.time)
 

@@ -52,7 +52,13 @@ def test_unknown_ranges_check_nothing():
 
 
 @pytest.mark.parametrize(
-    ("status", "kind"), [(0x80020000, "force_saturated"), (0xC0000000, "force_status"), (0x00000001, "force_status")]
+    ("status", "kind"),
+    [
+        (0x80020000, "force_saturated"),
+        (0xC0000000, "force_status"),
+        (0x80000000, "force_status"),
+        (0x00000001, "force_status"),
+    ],
 )
 def test_a_bad_status_is_a_fault(monitor, status, kind):
     with pytest.raises(SafetyError) as caught:

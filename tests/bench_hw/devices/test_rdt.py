@@ -108,6 +108,7 @@ def test_records_are_numbers_of_the_machine_when_converted():
     [
         (0x00000000, False, False, "healthy"),
         (0x80010000, False, False, "condition latched"),
+        (0x80000000, True, False, "an error whose cause is not named"),
         (0x80020000, True, True, "transducer saturated"),
         (0x00020000, True, True, "transducer saturated"),
         (0xC0000000, True, False, "CPU or RAM error"),

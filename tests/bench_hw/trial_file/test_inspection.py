@@ -121,12 +121,15 @@ def test_faults_name_what_the_capture_saw_and_what_the_sensor_said(make_records,
             records[number] = dataclasses.replace(item, status=0x80020000)
         if isinstance(item, ForceRecord) and item.rdt_sequence == 900:
             records[number] = dataclasses.replace(item, status=0x80010000)
+        if isinstance(item, ForceRecord) and item.rdt_sequence == 950:
+            records[number] = dataclasses.replace(item, status=0x80000000)
     records.append(EventRecord(52.5, "force_limit", "6.1 N is over the limit of 6 N", "fault"))
     result = inspect_trial(record(records)).to_dict()
     assert result["complete"] is True
     assert result["channels"]["force"]["saturated"] == 3
     assert result["faults"] == [
         "force_limit at 2.500 s: 6.1 N is over the limit of 6 N",
+        "force sensor: an error whose cause is not named in 1 rows, first at 0.949 s",
         "force sensor: transducer saturated in 3 rows, first at 0.100 s",
     ]
 

@@ -81,12 +81,13 @@ def test_late_doubled_faulty_and_nan_samples_are_left_out(record):
     samples[30] = sample(29, 0.30)
     samples[40] = sample(40, 0.40, status=0x80020000)
     samples[41] = sample(41, 0.41, status=0x40000000)
+    samples[42] = sample(42, 0.42, status=0x80000000)
     samples[50] = dataclasses.replace(sample(50, 0.50), force=(0.0, 0.0, float("nan")))
     samples[60] = sample(60, 0.60, status=0x80010000)
     samples[70] = sample(70, 0.69)
     table = read_trial_mcap(record([*samples, *depths(np.arange(0, 1.01, 0.02))]))
     missing = sorted(set(np.round(np.arange(100) / 100, 2)) - set(np.round(table.time, 2)))
-    assert missing == [0.21, 0.30, 0.40, 0.41, 0.50, 0.70]
+    assert missing == [0.21, 0.30, 0.40, 0.41, 0.42, 0.50, 0.70]
     assert (np.diff(table.time) > 0).all()
 
 
