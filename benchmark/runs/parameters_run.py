@@ -125,12 +125,12 @@ class ParameterWish:
         if self.posterior:
             load_emcee()
         for key in (key for key in table.free if key != EDGE_RADIUS):
-            refuse_without_effect(key, setup)
+            refuse_without_effect(key, session.setups)
             for law in self.laws or (table.law,):
                 parameters_of(key, setup, law)
         file = session.folder / SESSION_FILE if self.file is None else self.file
         if table.free:
-            self._check_told(table, setup, file)
+            self._check_told(table, session.setups, file)
         else:
             self._refuse_unused(table, file)
         if not self.sessions:  # of several, the others' layers are known later
@@ -149,13 +149,15 @@ class ParameterWish:
                 needed = "give free = [...] in [fit], or --free KEY,KEY"
                 raise InputError(f"{place} {next(iter(keys))}: without free parameters this is of no use; {needed}")
 
-    def _check_told(self, table: FitTable, setup: Setup, file: Path) -> None:
+    def _check_told(self, table: FitTable, setups: Sequence[Setup], file: Path) -> None:
         """Refuse what a file tells of a fit that does not fit; raises InputError that names the file."""
-        for law in self.laws or (table.law,):
-            try:
-                check_wish(table.model_copy(update={"law": law}), setup)
-            except InputError as error:
-                raise InputError(f"{file}: {error}") from None
+        try:
+            for key in table.fixed:
+                refuse_without_effect(key, setups, "[fit.fixed]")
+            for law in self.laws or (table.law,):
+                check_wish(table.model_copy(update={"law": law}), setups[0])
+        except InputError as error:
+            raise InputError(f"{file}: {error}") from None
 
 
 def answer_of(

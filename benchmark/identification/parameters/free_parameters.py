@@ -8,7 +8,7 @@ takes all stresses of its law along, except constants that have a value of their
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import TypeAlias
@@ -172,20 +172,23 @@ def parameters_of(key: str, setup: Setup, law: str | None) -> tuple[Parameter, .
     return (Parameter(key, value, value / FAR, value * FAR),)
 
 
-def refuse_without_effect(key: str, setup: Setup) -> None:
-    """Refuse a key of `--free` that changes no force of a press of this set-up; raises InputError that says why."""
+def refuse_without_effect(key: str, setups: Iterable[Setup], given: str = "--free") -> None:
+    """Refuse a key that changes no force in any of the set-ups; raises InputError, which says why."""
+    whys = [_without_effect(key, setup) for setup in setups]
+    if all(whys):
+        raise InputError(f"{given} {key}: no force depends on it ({whys[0]}); leave it out")
+
+
+def _without_effect(key: str, setup: Setup) -> str:
+    """Why a key changes no force of a press of this set-up; empty where it does."""
     tissue, _, support = setup
     last = tissue.layers[-1].name
     endless = (f"{last}.{THICKNESS}", *((THICKNESS,) if len(tissue.layers) == 1 else ()))
-    why = ""
     if key in {f"{name}.density" for name in tissue.layer_names}:
-        why = "presses are quasi-static, without inertia"
-    elif support.kind == "half_space" and key in endless:
-        why = f"the last layer of a half_space, {last}, is endless"
-    elif support.cylinder and key == RADIUS:
-        why = "a plate covers the cylinder's face"
-    if why:
-        raise InputError(f"--free {key}: no force depends on it, so that no trial tells it ({why}); leave it out")
+        return "presses are quasi-static, without inertia"
+    if support.kind == "half_space" and key in endless:
+        return f"the last layer of a half_space, {last}, is endless"
+    return "a plate covers the cylinder's face" if support.cylinder and key == RADIUS else ""
 
 
 def _relaxation(key: str, tissue: Tissue) -> tuple[Parameter, ...]:

@@ -309,6 +309,7 @@ def test_what_is_mistyped_is_refused_before_anything_is_computed(session, tmp_pa
             '[fit.fixed]\n"silicone.youngs_module" = "50 kPa"\n',
             r"\[fit.fixed\] silicone.youngs_module: .* did you mean silicone.youngs_modulus\? allowed: LAYER",
         ),
+        ('[fit.fixed]\n"silicone.density" = 1200\n', r"\[fit.fixed\] silicone.density: no force depends on it"),
         ('[fit.fixed]\n"tool.tilt" = "3 deg"\n', r"\[fit.fixed\] tool.tilt: this specimen and set-up have no such"),
         (
             '[fit.bounds]\n"silicon.youngs_modulus" = ["5 kPa", "200 kPa"]\n',

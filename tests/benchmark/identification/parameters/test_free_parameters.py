@@ -107,5 +107,12 @@ def test_a_session_may_ask_for_every_law() -> None:
 def test_what_no_force_depends_on_is_refused(key, support, why) -> None:
     setup = (*SETUP[:2], support)
     with pytest.raises(InputError, match=f"--free {key}: no force depends on it.*{why}"):
-        refuse_without_effect(key, setup)
-    refuse_without_effect("dermis.thickness", setup)
+        refuse_without_effect(key, (setup,))
+    with pytest.raises(InputError, match=rf"^\[fit.fixed\] {key}: no force depends on it \(.*{why}"):
+        refuse_without_effect(key, (setup,), "[fit.fixed]")
+    refuse_without_effect("dermis.thickness", (setup,))
+
+
+def test_what_a_force_depends_on_in_one_of_two_set_ups_is_taken() -> None:
+    covered = (*SETUP[:2], Support(kind="plates", specimen_radius=5e-3))
+    refuse_without_effect("tool.radius", (covered, SETUP))
