@@ -1,13 +1,14 @@
 """A film that started at another time than its trial, put on the trial's clock by the press.
 
 Markers move as the tool goes in.
-Their mean way from where they rested, m(t), is fitted by a quadratic of the depth d (zero in air) at the film's
-instants shifted by tau, m = a + b d(t + tau) + c d(t + tau)^2; the tau of least squares is the film's clock. Its
-standard deviation is that of the curvature of the sum of squares, widened by how long residuals stay alike. A second
-minimum that is nearly as deep (a press like the one before) is not decided here: it is asked for. Pictures that repeat
-the one before are left out: they are older than their time says. Where the motion up to an instant and from there on
-surely have another tau, or tau surely grows, the film's clock is broken (pictures are missing, or its rate is
-another): it is refused.
+Their mean way from where they rested, m(t), is fitted by a cubic of the depth d (zero in air) at the film's instants
+shifted by tau, m = a + b d(t + tau) + c d(t + tau)^2 + e d(t + tau)^3; the tau of least squares is the film's clock.
+Its standard deviation is that of the curvature of the sum of squares, widened by how long residuals stay alike. A
+second minimum that is nearly as deep (a press like the one before) is not decided here: it is asked for. Pictures that
+repeat the one before are left out: they are older than their time says. Where the motion up to an instant and from
+there on surely have another tau, or tau surely grows, the film's clock is broken (pictures are missing, or its rate is
+another): it is refused. A tool with play parts them by up to three frames, too: up to there the deviation takes half of
+the difference along.
 """
 
 from __future__ import annotations
@@ -41,25 +42,31 @@ STEPS_OF_TWO = 25
 REPEATED = 0.1
 """Of the usual way of the markers over two pictures: less from one to the next is noise of the same picture."""
 SURE = 10.0
-"""Standard deviations of the difference of two shifts beyond which they differ: in sound films of presses whose markers
-are no quadratic of the depth there are up to 7."""
+"""Standard deviations of the difference of two shifts beyond which they differ."""
 LEAST_FRAMES = 3.0
 """Frames by which they must differ besides."""
+DOUBTED = 6.0
+"""Standard deviations of that difference beyond which the shift's own deviation takes half of it along."""
 
 
 @dataclass(frozen=True)
 class ClockShift:
-    """What is added to the film's times (s), its standard deviation (s), and the share of variance it explains."""
+    """What is added to the film's times (s), its standard deviation (s), and the share of variance it explains.
+
+    `parted` is by how much beginning and end of the film differ in it (s), zero where that is not sure.
+    """
 
     shift: float
     deviation: float
     explained: float
+    parted: float = 0.0
 
 
 def marker_way(markers: MarkerTable) -> tuple[Array, Array]:
     """Frames (f,) s and the mean way (f,) m of all markers from their median place in the first tenth of the frames.
 
-    Frames that repeat the one before are left out.
+    Each marker's way is along the line on which it goes, so that noise adds to it as much as it takes off; its distance
+    would begin with a corner where the motion is as small as the noise. Frames that repeat the one before are left out.
     """
     frames = np.unique(markers.time)
     numbers = [markers.marker == number for number in np.unique(markers.marker)]
@@ -67,7 +74,10 @@ def marker_way(markers: MarkerTable) -> tuple[Array, Array]:
         [[np.interp(frames, markers.time[mine], values[mine]) for values in (markers.x, markers.y)] for mine in numbers]
     )
     rest = max(3, len(frames) // 10)
-    way = np.hypot(*(places - np.median(places[:, :, :rest], axis=2, keepdims=True)).swapaxes(0, 1)).mean(axis=0)
+    moved = places - np.median(places[:, :, :rest], axis=2, keepdims=True)
+    line = moved.sum(axis=2, keepdims=True)
+    line /= np.maximum(np.linalg.norm(line, axis=1, keepdims=True), 1e-300)
+    way = (moved * line).sum(axis=1).mean(axis=0)
     fresh = np.ones(len(frames), dtype=bool)
     if len(frames) > 2:
         once, twice = (np.sqrt(((places[..., k:] - places[..., :-k]) ** 2).mean(axis=(0, 1))) for k in (1, 2))
@@ -85,18 +95,18 @@ def film_shift(name: str, table: TrialTable, markers: MarkerTable) -> ClockShift
     """
     frames, way = marker_way(markers)
     found = _one_shift(name, table, frames, way)
-    _refuse_broken(name, table, frames, way, found.shift)
-    return found
+    parted = _parted(name, table, frames, way, found.shift)
+    return replace(found, deviation=float(np.hypot(found.deviation, 0.5 * parted)), parted=parted)
 
 
-def _one_shift(name: str, table: TrialTable, frames: Array, way: Array) -> ClockShift:
-    """The shift of all frames; raises InputError where there is none, or two are as likely."""
+def _one_shift(name: str, table: TrialTable, frames: Array, way: Array, powers: int = 3) -> ClockShift:
+    """The shift of all frames, by powers of the depth; raises InputError where there is none, or two are as likely."""
     step = max(float(np.median(np.diff(frames))), float(np.median(np.diff(table.time)))) / STEPS
     overlap = 0.5 * min(float(np.ptp(frames)), float(np.ptp(table.time)))
     shifts = np.arange(table.time[0] - frames[-1] + overlap, table.time[-1] - frames[0] - overlap, step)
     if len(shifts) < 5:
         raise InputError(f"trial {name}: film and force are too short to be aligned; allowed: a whole press in both.")
-    squares = np.array([_squares(table, frames + shift, way) for shift in shifts])
+    squares = np.array([_squares(table, frames + shift, way, powers) for shift in shifts])
     best = int(np.clip(np.argmin(squares), 1, len(shifts) - 2))
     total = float(((way - way.mean()) ** 2).sum())
     explained = 1.0 - float(squares[best]) / max(total, 1e-300)
@@ -113,46 +123,48 @@ def _one_shift(name: str, table: TrialTable, frames: Array, way: Array) -> Clock
             f"trial {name}: the film fits the force shifted by {shifts[best]:.3f} s and by {rival[0]:.3f} s; allowed: "
             f'a film that shows the whole record, or marker times on the trial\'s clock (camera.clock = "shared").'
         )
-    return _refined(shifts, squares, best, len(frames), _alike(table, frames + shifts[best], way), explained)
+    alike = _stretch_alike(_residual(table, frames + shifts[best], way, powers))
+    return _refined(shifts, squares, best, len(frames), alike, explained)
 
 
-def _refuse_broken(name: str, table: TrialTable, frames: Array, way: Array, shift: float) -> None:
-    """Refuse a film whose shift surely jumps at some instant, or grows evenly."""
+def _parted(name: str, table: TrialTable, frames: Array, way: Array, shift: float) -> float:
+    """By how much the shift jumps at some instant, or grows evenly, s; raises InputError where it surely does."""
     depth = _depth(table, frames + shift)
     moved = np.cumsum(np.abs(np.diff(depth, prepend=depth[0])))
     lateness = [(moved >= share * moved[-1]).astype(np.float64) for share in PARTED]
     lateness.append((frames - frames[0]) / (frames[-1] - frames[0]))
     found = [_two_shifts(table, frames, way, shift, late) for late in lateness]
     first, second, deviation = max(found, key=lambda each: abs(each[1] - each[0]) / max(each[2], 1e-12))
-    apart = abs(second - first)
-    if apart > SURE * deviation and apart > LEAST_FRAMES * float(np.median(np.diff(frames))):
+    apart, most = abs(second - first), LEAST_FRAMES * float(np.median(np.diff(frames)))
+    if apart > SURE * deviation and apart > most:
         raise InputError(
             f"trial {name}: the film's clock does not run as the force's: the film's beginning is shifted by "
             f"{first:.3f} s, its end by {second:.3f} s (standard deviation of the difference {deviation:.3f} s). "
             "Pictures are missing between, or the film's rate is another than it says; allowed: a film with all its "
             "pictures at its true rate, or tracks with their true times."
         )
+    return min(apart, most) if apart > DOUBTED * deviation else 0.0
 
 
 def _two_shifts(table: TrialTable, frames: Array, way: Array, shift: float, late: Array) -> tuple[float, float, float]:
     """Shifts where `late` (f,) is 0 and 1, with all between, and the standard deviation of their difference, s.
 
-    One quadratic of the depth is for all. By Gauss and Newton from a common shift, two frames a step at most; the
+    One cubic of the depth is for all. By Gauss and Newton from a common shift, two frames a step at most; the
     deviation is by what two shifts explain more than one.
     """
     shifts, most, squares = np.array([shift, shift]), 2.0 * float(np.median(np.diff(frames))), []
     for _ in range(STEPS_OF_TWO):
         at = frames + shifts[0] + (shifts[1] - shifts[0]) * late
         depth, before, after = (_depth(table, at + aside) for aside in (0.0, -0.5 * most, 0.5 * most))
-        columns = np.column_stack([np.ones_like(depth), depth, depth**2])
+        columns = _columns(depth)
         curve = np.linalg.lstsq(columns, way, rcond=None)[0]
-        speed = (curve[1] * (after - before) + curve[2] * (after**2 - before**2)) / most
+        speed = (_columns(after) - _columns(before)) @ curve / most
         left = way - columns @ curve
         squares.append((float(left @ left), *shifts))
         whole = np.column_stack([columns, speed * (1.0 - late), speed * late])
-        shifts = shifts + np.clip(np.linalg.lstsq(whole, left, rcond=None)[0][3:], -most, most)
+        shifts = shifts + np.clip(np.linalg.lstsq(whole, left, rcond=None)[0][-2:], -most, most)
     least, first, second = min(squares)
-    gain = (squares[0][0] - least) / max(least, 1e-300) * max(len(way) - 5, 1) / _stretch_alike(left)
+    gain = (squares[0][0] - least) / max(least, 1e-300) * max(len(way) - 6, 1) / _stretch_alike(left)
     return first, second, abs(second - first) / max(float(np.sqrt(gain)), 1e-9)
 
 
@@ -171,22 +183,22 @@ def _depth(table: TrialTable, times: Array) -> Array:
     return np.asarray(1e3 * np.clip(np.interp(times, table.time, table.depth), 0.0, None))
 
 
-def _residual(table: TrialTable, times: Array, way: Array) -> Array:
-    depth = _depth(table, times)
-    columns = np.column_stack([np.ones_like(depth), depth, depth**2])
+def _columns(depth: Array, powers: int = 3) -> Array:
+    """Powers (f, powers + 1) of a depth (f,), the zeroth first."""
+    return np.vander(depth, powers + 1, increasing=True)
+
+
+def _residual(table: TrialTable, times: Array, way: Array, powers: int) -> Array:
+    columns = _columns(_depth(table, times), powers)
     return np.asarray(way - columns @ np.linalg.lstsq(columns, way, rcond=None)[0])
 
 
-def _squares(table: TrialTable, times: Array, way: Array) -> float:
-    return float((_residual(table, times, way) ** 2).sum())
-
-
-def _alike(table: TrialTable, times: Array, way: Array) -> float:
-    """How many frames residuals stay alike: (1 + r) / (1 - r) of their first autocorrelation, one at least."""
-    return _stretch_alike(_residual(table, times, way))
+def _squares(table: TrialTable, times: Array, way: Array, powers: int) -> float:
+    return float((_residual(table, times, way, powers) ** 2).sum())
 
 
 def _stretch_alike(left: Array) -> float:
+    """How many frames residuals stay alike: (1 + r) / (1 - r) of their first autocorrelation, one at least."""
     r = float(left[1:] @ left[:-1]) / max(float(left @ left), 1e-300)
     return max(1.0, (1.0 + r) / max(1.0 - r, 1e-3))
 
@@ -198,18 +210,26 @@ def on_trials_clock(name: str, table: TrialTable, markers: MarkerTable) -> tuple
         f"trial {name}: the film's clock is shifted by {found.shift:.4f} s (standard deviation {found.deviation:.4f} "
         f"s), found from the press: it explains {100 * found.explained:.1f} % of the markers' way"
     )
+    if found.parted:
+        said += (
+            f"; its beginning and end differ by {found.parted:.3f} s, as where a few pictures are missing, the rate is "
+            "another or the tool has play: the deviation has half of that"
+        )
     return replace(markers, time=markers.time + found.shift), said
 
 
 def doubtful_clocks(names: Sequence[str], tables: Sequence[TrialTable], films: Sequence[MarkerTable]) -> list[str]:
-    """A warning of films that are said to be on their trials' clock, and follow the press at another time."""
+    """A warning of films that are said to be on their trials' clock, and follow the press at another time.
+
+    By a quadratic: a cubic follows a tool with backlash closely, too.
+    """
     off: dict[str, float] = {}
     for name, table, film in zip(names, tables, films, strict=True):
         frames = np.unique(film.time)
         kept = np.isin(film.time, frames[:: len(frames) // ENOUGH + 1])
         columns = {key: getattr(film, key)[kept] for key in ("time", "marker", "x", "y")}
         try:
-            found = _one_shift(name, table, *marker_way(replace(film, **columns)))
+            found = _one_shift(name, table, *marker_way(replace(film, **columns)), powers=2)
         except InputError:
             continue  # they do not move, or tell no time
         if abs(found.shift) > max(LATE, SURELY * found.deviation) and found.explained > CLOSELY:

@@ -9,14 +9,18 @@ from benchmark.files.sessions.film_clock import doubtful_clocks, film_shift, on_
 from tests.instruments.samples import press
 
 
-def trial_and_film(shift, seed, cycles=1, noise=5e-6):
-    """A trial, and a film at 30 Hz of nine markers that move out as 0.15 d + 0.02 d^2 (mm), behind by `shift`."""
-    one, random = press(rate=100.0, cycles=cycles), np.random.default_rng(seed)
+def quadratic(depth):
+    return 0.15 * depth + 0.02 * depth**2
+
+
+def trial_and_film(shift, seed, cycles=1, noise=5e-6, hold=2.0, law=quadratic):
+    """A trial, and a film at 30 Hz of nine markers that move out as a law of the depth (mm), behind by `shift`."""
+    one, random = press(rate=100.0, cycles=cycles, hold=hold), np.random.default_rng(seed)
     table = TrialTable(one.time, 1e-3 * one.depth, one.force)
     frames = np.arange(one.time[0] + 0.1, one.time[-1] - 0.1, 1 / 30)
     depth = np.clip(np.interp(frames, one.time, one.depth), 0.0, None)
     grid = np.array([(x, y) for y in (-8.0, 0.0, 8.0) for x in (-8.0, 0.0, 8.0)])
-    places = grid[None] * (1.0 + (0.15 * depth + 0.02 * depth**2)[:, None, None] / 10.0)
+    places = grid[None] * (1.0 + law(depth)[:, None, None] / 10.0)
     places = 1e-3 * places + random.normal(0.0, noise, places.shape)
     marker = np.tile(np.arange(9), len(frames))
     times = np.repeat(frames - shift, 9)
@@ -89,3 +93,27 @@ def test_pictures_that_repeat_the_one_before_are_left_out():
         doubled = at_frames(markers, np.arange(len(times)) // 2 * 2, times)
         errors.append(film_shift("a", table, doubled).shift - 0.8)
     assert abs(np.mean(errors)) < 0.004  # with them half a frame, 0.017 s
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_gap_or_a_rate_too_small_to_be_sure_of_is_in_the_deviation_and_said(seed):
+    """One to three pictures, or 1 % of the rate, moved the shift by up to fifteen of its standard deviations."""
+    table, markers = trial_and_film(0.0, seed, noise=2e-6)
+    times = np.unique(markers.time)
+    count = len(times)
+    films = [([*range(80), *range(80 + lost, count)], times[: count - lost]) for lost in (1, 2)]
+    films += [(range(count), times[0] + rate * (times - times[0])) for rate in (0.99, 1.01)]
+    for chosen, stamps in films:
+        _, said = on_trials_clock("a", table, at_frames(markers, chosen, stamps))
+        found = film_shift("a", table, at_frames(markers, chosen, stamps))
+        assert abs(found.shift) < 2.5 * found.deviation < 0.15
+        assert "beginning and end differ by" in said
+
+
+@pytest.mark.parametrize("law", [quadratic, lambda depth: 0.1 * depth**1.5, lambda depth: 0.03 * depth**3])
+@pytest.mark.parametrize("hold", [0.0, 2.0])
+def test_a_sound_film_of_any_law_is_taken(law, hold):
+    """The distance of noisy markers begins with a corner, and a quadratic of the depth has none of these laws."""
+    for seed in range(4):
+        found = film_shift("a", *trial_and_film(0.3, seed, hold=hold, law=law))
+        assert found.shift == pytest.approx(0.3, abs=6e-3)
