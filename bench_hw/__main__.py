@@ -6,6 +6,7 @@ import sys
 from bench_hw.starting import (
     end,
     interrupted,
+    keep_caches,
     keep_interruptions,
     leave_current_folder,
     not_installed,
@@ -21,6 +22,7 @@ def start() -> int:
         keep_interruptions()
         open_streams()
         speak_utf8()
+        keep_caches()
         tell(leave_current_folder(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), sys.argv)
         try:
             from bench_hw.cli import main

@@ -77,6 +77,35 @@ def speak_utf8() -> None:
         reconfigure(errors="backslashreplace")  # names of files need be no text at all
 
 
+def keep_caches() -> None:
+    """Give libraries a folder for this run where they could not write the user's, and would say so on stderr."""
+    config = os.environ.get("XDG_CONFIG_HOME") or "~/.config"
+    cache = os.environ.get("XDG_CACHE_HOME") or "~/.cache"
+    given = os.environ.get("MPLCONFIGDIR")
+    if _can_be_written(given or f"{config}/matplotlib") and _can_be_written(f"{cache}/matplotlib"):
+        return
+    import atexit
+    import shutil
+    import tempfile
+
+    try:
+        folder = tempfile.mkdtemp(prefix="tissuebench-")
+    except OSError:  # nothing can be written here; what draws says so
+        return
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    os.environ["XDG_CACHE_HOME"] = folder  # for fontconfig, which matplotlib asks
+    if not (given and _can_be_written(given)):
+        os.environ["MPLCONFIGDIR"] = folder
+
+
+def _can_be_written(folder: str) -> bool:
+    """Whether a folder can be written, or made where it is not there."""
+    folder = os.path.abspath(os.path.expanduser(folder))
+    while not os.path.lexists(folder):
+        folder = os.path.dirname(folder)
+    return os.path.isdir(folder) and os.access(folder, os.W_OK | os.X_OK)
+
+
 def tell(names: list[str], arguments: list[str]) -> None:
     """Say on stderr, in one line, what is passed over; nothing with --quiet."""
     if not names or "--quiet" in arguments:

@@ -21,6 +21,7 @@ def _start() -> int:
     sys.path.insert(0, root)
     from bench_hw.starting import (
         end,
+        keep_caches,
         keep_interruptions,
         leave_current_folder,
         not_installed,
@@ -35,6 +36,7 @@ def _start() -> int:
         signal.signal(signal.SIGTERM, _terminated)
     open_streams()
     speak_utf8()
+    keep_caches()
     tell(leave_current_folder(root), sys.argv)
     try:
         from benchmark.cli.app import main

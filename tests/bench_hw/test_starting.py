@@ -157,3 +157,22 @@ def test_ctrl_c_that_other_code_passes_over_ends_the_program(package):
     assert code == 130
     assert err.startswith("error: interrupted")
     assert err.count("\n") == 1
+
+
+def test_a_home_that_cannot_be_written_brings_no_words_of_a_library(tmp_path):
+    """matplotlib told of its temporary cache on standard error, under --quiet, too."""
+    home, temporary = tmp_path / "home", tmp_path / "temporary"
+    home.touch()
+    temporary.mkdir()
+    unset = ("XDG_CACHE_HOME", "XDG_CONFIG_HOME", "MPLCONFIGDIR")
+    environment = {key: value for key, value in os.environ.items() if key not in unset}
+    words = ("-m", "bench_hw", "capture", "paper_press", "--dry-run", "--plot", str(tmp_path / "plot.svg"))
+    ran = subprocess.run(
+        [sys.executable, *words],
+        capture_output=True,
+        text=True,
+        env=environment | {"HOME": str(home), "TMPDIR": str(temporary)},
+    )
+    assert (ran.returncode, ran.stderr) == (0, "")
+    assert (tmp_path / "plot.svg").is_file()
+    assert not list(temporary.iterdir())
