@@ -19,6 +19,7 @@ import numpy as np
 
 import fem
 from benchmark.exchange.exported_press import ExportedPress, Laws, Nodes, law_text, refuse_linear
+from benchmark.files.tissue import LARGEST_EXPONENT
 from fem.materials.material import LARGEST_POISSON_RATIO
 from fem.materials.neo_hookean import CoupledNeoHookean
 
@@ -310,6 +311,8 @@ def _as_ogden(values: Mapping[str, float]) -> fem.Material:
     for n, (c, m) in enumerate(pairs, start=1):
         if c != 0.0 and m == 0.0:
             raise fem.FemError(f"m{n} = 0 with c{n} = {c:g}: must not be zero (c / m^2 is the term's factor)")
+        if abs(m) > LARGEST_EXPONENT:
+            raise fem.FemError(f"m{n} = {m:g}: must be {-LARGEST_EXPONENT:g} to {LARGEST_EXPONENT:g}")
     ratio = _ratio(0.5 * sum(c for c, _ in pairs), values["k"], "half the sum of c1, c2, ...")
     return fem.Ogden(tuple((c / m, m) for c, m in pairs if c != 0.0), ratio)
 

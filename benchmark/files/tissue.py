@@ -73,6 +73,10 @@ class Yeoh(FileModel):
         return 2 * self.c10
 
 
+LARGEST_EXPONENT = 1e3
+"""Of Ogden's terms: at a stretch of 2 its power is the largest that a number can have."""
+
+
 class OgdenTerm(FileModel):
     """One term mu / alpha (l1^alpha + l2^alpha + l3^alpha - 3) of Ogden's energy.
 
@@ -80,7 +84,13 @@ class OgdenTerm(FileModel):
     """
 
     mu: SignedModulus
-    alpha: Annotated[float, Number("-1000 to 1000", Bounds(-1e3, 1e3))]
+    alpha: Annotated[float, Number("-1000 to 1000, and not 0", Bounds(-LARGEST_EXPONENT, LARGEST_EXPONENT))]
+
+    @model_validator(mode="after")
+    def _of_some_exponent(self) -> Self:
+        if self.alpha == 0:
+            raise problem("0 is outside what is allowed, -1000 to 1000, and not 0", key="alpha")
+        return self
 
 
 class Ogden(FileModel):

@@ -239,6 +239,7 @@ def test_a_body_that_is_pressed_flat_is_said(tmp_path):
     [
         ("Ogden", "<c1>6</c1><m1>0</m1><k>30</k>", "m1 = 0 with c1 = 6: must not be zero"),
         ("Ogden", "<c1>6</c1><m1>3</m1><c2>2</c2><m2>0</m2><k>30</k>", "m2 = 0 with c2 = 2: must not be zero"),
+        ("Ogden", "<c1>6</c1><m1>-1e5</m1><k>30</k>", r"m1 = -100000: must be -1000 to 1000"),
         ("Ogden", "<c1>6</c1><m1>3</m1><c2>-6</c2><m2>3</m2><k>30</k>", "half the sum of c1, c2, ... = 0: .* above 0"),
         ("Mooney-Rivlin", "<c1>-2</c1><c2>1</c2><k>2</k>", r"2 \(c1 \+ c2\) = -2: .* must be above 0"),
         ("Mooney-Rivlin", "<c1>0</c1><c2>0</c2><k>0</k>", r"2 \(c1 \+ c2\) = 0: .* must be above 0"),

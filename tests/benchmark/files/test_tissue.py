@@ -42,6 +42,7 @@ def test_each_law_states_its_initial_shear_modulus(table, shear_modulus):
         {"law": "gent", "mu": "40 kPa", "jm": 0},
         {"law": "ogden", "terms": []},
         {"law": "ogden", "terms": [{"mu": "10 kPa", "alpha": -6.0}]},
+        {"law": "ogden", "terms": [{"mu": "10 kPa", "alpha": 2.0}, {"mu": "1 kPa", "alpha": 0.0}]},
         {"law": "ogden", "terms": [{"mu": "10 kPa", "alpha": 2.0}] * 7},
     ],
 )
