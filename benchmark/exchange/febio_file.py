@@ -300,6 +300,15 @@ def _output(press: ExportedPress, swept: _Swept) -> Iterator[str]:
     yield "</logfile></Output>"
 
 
+def _as_neo_hookean(values: Mapping[str, float]) -> fem.Material:
+    youngs_modulus, ratio = values["E"], values["v"]
+    if not youngs_modulus > 0.0:
+        raise fem.FemError(f"E = {youngs_modulus:g}: Young's modulus must be above 0")
+    if not -1.0 < ratio <= LARGEST_POISSON_RATIO:
+        raise fem.FemError(f"v = {ratio:g}: Poisson's ratio must be above -1 and at most {LARGEST_POISSON_RATIO}")
+    return CoupledNeoHookean(youngs_modulus, ratio)
+
+
 def _as_mooney_rivlin(values: Mapping[str, float]) -> fem.Material:
     c1, c2, k = values["c1"], values["c2"], values["k"]
     return fem.MooneyRivlin(c1, c2, _ratio(2.0 * (c1 + c2), k, "2 (c1 + c2)"))
@@ -333,7 +342,7 @@ def _ratio(shear: float, bulk: float, what: str) -> float:
 
 READ_LAWS: Mapping[str, tuple[Callable[[Mapping[str, float]], fem.Material], str]] = MappingProxyType(
     {
-        "neo-Hookean": (lambda values: CoupledNeoHookean(values["E"], values["v"]), "E v"),
+        "neo-Hookean": (_as_neo_hookean, "E v"),
         "Mooney-Rivlin": (_as_mooney_rivlin, "c1 c2 k"),
         "Ogden": (_as_ogden, " ".join(["k", *(f"{letter}{n}" for letter in "cm" for n in range(1, MOST_TERMS + 1))])),
     }

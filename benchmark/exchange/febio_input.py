@@ -296,19 +296,20 @@ class _Reader:
             kind = found[0].get("type") if found else "none"
             raise self.refuse(f"material {name}: {kind} is not read; read are {', '.join(sorted(READ_LAWS))}")
         kind = str(found[0].get("type"))
+        what = f"material {name} (id {found[0].get('id')})"
         law, constants = READ_LAWS[kind]
-        self.only(found[0], f"{constants} density pressure_model", f"material {name}")
+        self.only(found[0], f"{constants} density pressure_model", what)
         told = {one.tag: one.text for one in found[0]}
         model = (told.pop("pressure_model", None) or DEFAULT_MODEL[0]).strip()
-        values = {tag: self.number(text, f"material {name}: {tag}") for tag, text in told.items()}
+        values = {tag: self.number(text, f"{what}: {tag}") for tag, text in told.items()}
         if model not in DEFAULT_MODEL:
-            raise self.refuse(f"material {name}: another pressure_model than FEBio's default is not read")
+            raise self.refuse(f"{what}: another pressure_model than FEBio's default is not read")
         try:
             return kind, law(values)
         except KeyError as error:
-            raise self.refuse(f"material {name}: {error.args[0]} is missing") from None
+            raise self.refuse(f"{what}: {error.args[0]} is missing") from None
         except FemError as error:
-            raise self.refuse(f"material {name}: {error}") from error
+            raise self.refuse(f"{what}: {error}") from error
 
     def _set(self, name: str | None, place: dict[int, int]) -> list[int]:
         """Places of the nodes of a set, those of rigid bodies apart: `<n id=.../>` each, or numbers between commas."""

@@ -136,7 +136,10 @@ def test_the_later_format_is_the_same(tmp_path):
         ("<!DOCTYPE a>" + text(), "document type"),
         (text(NEO_HOOKEAN.replace("neo-Hookean", "muscle material")), "muscle material is not read"),
         (text(NEO_HOOKEAN.replace("<v>0.3</v>", "")), "v is missing"),
-        (text(NEO_HOOKEAN.replace("0.3", "0.6")), "poisson_ratio"),
+        (
+            text(NEO_HOOKEAN.replace("0.3", "0.6")),
+            r"material m \(id 1\): v = 0.6: Poisson's ratio must be above -1 and",
+        ),
         (text(NEO_HOOKEAN.replace("0.3", "much")), "'much': must be a number"),
         (text(boundary=SLIDING.replace("left", "nowhere")), "no NodeSet nowhere"),
         (text(boundary=SLIDING.replace(">z<", ">p<")), "'p': must be displacements"),
@@ -166,7 +169,7 @@ def test_the_later_format_is_the_same(tmp_path):
         (text(extra='<Loads from="more.feb"/>'), "Loads: a section must be there once, and whole"),
         (text(boundary=SLIDING + "<rigid/>"), "Boundary: rigid is not read"),
         (text(NEO_HOOKEAN.replace("<E>", '<E lc="1">')), "Material: E: a load curve of it is not read"),
-        (text(NEO_HOOKEAN.replace("<E>", "<mat_axis/><E>")), "material m: mat_axis is not read"),
+        (text(NEO_HOOKEAN.replace("<E>", "<mat_axis/><E>")), r"material m \(id 1\): mat_axis is not read"),
         (text().replace("<SolidDomain", "<ShellDomain/><SolidDomain"), "MeshDomains: ShellDomain is not read"),
         (text().replace("<SolidDomain", '<SolidDomain type="udg-hex"'), "SolidDomain part: type 'udg-hex' is not read"),
         (text().replace("<SolidDomain", '<SolidDomain elem_type="HEX8G1"'), "elem_type 'HEX8G1' is not read"),
@@ -237,6 +240,7 @@ def test_a_body_that_is_pressed_flat_is_said(tmp_path):
 @pytest.mark.parametrize(
     ("kind", "constants", "words"),
     [
+        ("neo-Hookean", "<E>-3</E><v>0.3</v>", "E = -3: Young's modulus must be above 0"),
         ("Ogden", "<c1>6</c1><m1>0</m1><k>30</k>", "m1 = 0 with c1 = 6: must not be zero"),
         ("Ogden", "<c1>6</c1><m1>3</m1><c2>2</c2><m2>0</m2><k>30</k>", "m2 = 0 with c2 = 2: must not be zero"),
         ("Ogden", "<c1>6</c1><m1>-1e5</m1><k>30</k>", r"m1 = -100000: must be -1000 to 1000"),
@@ -252,7 +256,7 @@ def test_a_body_that_is_pressed_flat_is_said(tmp_path):
     ],
 )
 def test_constants_without_a_stiffness_are_refused_by_their_names(tmp_path, kind, constants, words):
-    with pytest.raises(InputError, match=rf"case.feb: material m: {words}"):
+    with pytest.raises(InputError, match=rf"case.feb: material m \(id 1\): {words}"):
         read(tmp_path, text(f'<material id="1" name="m" type="{kind}">{constants}</material>'))
 
 
