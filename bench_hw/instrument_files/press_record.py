@@ -18,7 +18,7 @@ from bench_hw.instrument_files.blocks import Block
 from bench_hw.instrument_files.column_choice import Taken, check_decimal, header_line, kinds, takes
 from bench_hw.instrument_files.text_sheet import ONE_UNIT, is_absent, unit_in
 from bench_hw.instrument_files.told import AUTOMATIC, KEPT, TARGETS, Told, asking, asking_key, parse_source
-from bench_hw.instrument_files.vocabulary import COMPRESSION, DIMENSIONS, TENSION, role_of, unit_scale
+from bench_hw.instrument_files.vocabulary import COMPRESSION, DIMENSIONS, MASSES, TENSION, role_of, unit_scale
 from bench_hw.tables.columns import LARGEST, check_increasing, check_row_count
 from bench_hw.tables.measurement import TrialTable, calm, check_totals
 from bench_hw.tables.units import FloatArray
@@ -111,7 +111,7 @@ def record_of(block: Block, told: Told) -> PressRecord:
 
 
 def _told_otherwise(block: Block, found: Mapping[str, Taken], told: Told) -> list[str]:
-    """What a person told of times and units where the file says something else itself."""
+    """What a person told of times and units where the file says something else, and a mass in a force's place."""
     notes = []
     times = [name for name in block.names if name and (meaning := role_of(name)) and meaning[0] == "time"]
     if told.rate and times:
@@ -122,6 +122,9 @@ def _told_otherwise(block: Block, found: Mapping[str, Taken], told: Told) -> lis
         unit, own = parse_source(role, told.columns[role]).unit, block.units[found[role].column]
         if unit and own and unit_scale(own, DIMENSIONS[found[role].role]) not in (None, found[role].scale):
             notes.append(f"the {role} is read in {unit}, as told, where the file says {own}")
+    unit = found["force"].shown.rpartition(" [")[2].rstrip("]") if "force" in found else ""
+    if unit in MASSES:
+        notes.append(f"the force in {unit} is the weight of that mass: 1 {unit} is {found['force'].scale:.6g} N")
     return notes
 
 

@@ -20,8 +20,9 @@ UNITS: Final[dict[str, tuple[float, str]]] = {
     "min": (60.0, "s"), "h": (3600.0, "s"),
     "m": (1.0, "m"), "cm": (1e-2, "m"), "mm": (1e-3, "m"), "毫米": (1e-3, "m"), "um": (1e-6, "m"), "µm": (1e-6, "m"),
     "micron": (1e-6, "m"), "microns": (1e-6, "m"), "nm": (1e-9, "m"), "in": (0.0254, "m"), "inch": (0.0254, "m"),
+    **dict.fromkeys(("inches", '"'), (0.0254, "m")), **dict.fromkeys(("mil", "mils", "thou"), (2.54e-5, "m")),
     "N": (1.0, "N"), "newton": (1.0, "N"), "newtons": (1.0, "N"), "牛": (1.0, "N"), "mN": (1e-3, "N"),
-    "cN": (1e-2, "N"),
+    "cN": (1e-2, "N"), "daN": (10.0, "N"),
     "uN": (1e-6, "N"), "µN": (1e-6, "N"), "nN": (1e-9, "N"), "pN": (1e-12, "N"), "kN": (1e3, "N"), "MN": (1e6, "N"),
     **dict.fromkeys(("g", "gf", "grams", "gram", "p"), (9.80665e-3, "N")),
     **dict.fromkeys(("kg", "kgf", "kp"), (9.80665, "N")),
@@ -37,6 +38,8 @@ UNITS: Final[dict[str, tuple[float, str]]] = {
 }  # fmt: skip
 """SI value and dimension of a unit as instruments write it; a gram in a column of forces is a gram-force."""
 
+MASSES: Final = frozenset({"g", "gram", "grams", "kg", "mg", "lb", "lbs", "oz"})
+"""Units of a mass, which a column of forces has for its weight."""
 RELATIVE: Final = frozenset({"%", "mm/mm", "m/m"})
 """Units of a strain that no displacement has."""
 _BY_FOLDED: Final = {unit.casefold(): unit for unit in reversed(UNITS)}

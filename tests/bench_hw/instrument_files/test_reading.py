@@ -692,3 +692,21 @@ def test_times_of_a_tenth_of_a_second_keep_their_pace_at_both_ends(count, writte
     (record,) = read_instrument_file(path, Told()).records
     np.testing.assert_allclose(record.table.time, time, atol=0.012)
     assert np.diff(record.table.time)[[0, -1]] == pytest.approx(0.01, rel=0.1)
+
+
+@pytest.mark.parametrize("head", ["Time (s),Distance ({1}),Force ({0})", "time_s,distance_{1},force_{0}"])
+@pytest.mark.parametrize(
+    ("force", "newton"),
+    [("gf", samples.GRAM), ("g", samples.GRAM), ("kg", 1e3 * samples.GRAM), ("kgf", 1e3 * samples.GRAM), ("daN", 10.0)],
+)
+@pytest.mark.parametrize(("depth", "mm"), [("inch", 25.4), ("mil", 0.0254), ("µm", 1e-3)])
+def test_forces_and_lengths_come_out_in_si_and_a_mass_is_told_to_be_a_weight(tmp_path, head, force, newton, depth, mm):
+    one, path = press(), tmp_path / "a.csv"
+    rows = samples.rows(one.time, one.depth / mm, one.force / newton, digits=(2, 9, 9))
+    path.write_text("\n".join([head.format(force, depth), *rows]) + "\n", encoding="utf-8")
+    (record,) = read_instrument_file(path).records
+    np.testing.assert_allclose(record.table.force, one.force, atol=1e-6)
+    assert np.ptp(record.table.depth) == pytest.approx(1e-3 * np.ptp(one.depth), rel=1e-6)
+    said = [note for note in record.notes if "the weight of that mass" in note]
+    assert len(said) == (force in ("g", "kg"))
+    assert all(f"1 {force} is {newton:g} N" in note for note in said)
