@@ -3,7 +3,11 @@
 import os
 import signal
 import sys
+import time
 from types import FrameType
+
+ONE = 1.0
+"""Seconds within which SIGTERM is one wish: `timeout` sends it to the program and at once to its group, too."""
 
 
 def start() -> int:
@@ -17,6 +21,8 @@ def start() -> int:
 
 
 def _start() -> int:
+    if signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:
+        signal.signal(signal.SIGTERM, _terminated)
     root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     sys.path.insert(0, root)
     from bench_hw.starting import (
@@ -32,8 +38,6 @@ def _start() -> int:
 
     sys.path.remove(root)
     keep_interruptions()
-    if signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:
-        signal.signal(signal.SIGTERM, _terminated)
     open_streams()
     speak_utf8()
     keep_caches()
@@ -46,11 +50,18 @@ def _start() -> int:
 
 
 def _terminated(_: int, __: FrameType | None) -> None:
-    """End as by Ctrl-C where SIGTERM comes, the processes at work first; a second one ends the program at once.
+    """End as by Ctrl-C where SIGTERM comes, the processes at work first; a later one ends the program at once.
 
     Ended on the spot, a pool's semaphores stay behind, and Python warns of a leak.
     """
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    began = time.monotonic()
+
+    def again(number: int, _: FrameType | None) -> None:
+        if time.monotonic() - began > ONE:
+            signal.signal(number, signal.SIG_DFL)
+            os.kill(os.getpid(), number)
+
+    signal.signal(signal.SIGTERM, again)
     if "multiprocessing" in sys.modules:
         for child in sys.modules["multiprocessing"].active_children():
             child.terminate()

@@ -156,3 +156,23 @@ def test_sigterm_ends_a_pool_at_work_without_a_warning_of_leaks() -> None:
     """Python warned of leaked semaphore objects between our words."""
     ran = subprocess.run([sys.executable, "-c", POOL_AT_WORK], capture_output=True, text=True, timeout=120)
     assert (ran.returncode, ran.stdout, ran.stderr) == (0, "interrupted\n", "")
+
+
+TWICE = """
+import os, signal, time
+from benchmark.__main__ import _terminated
+signal.signal(signal.SIGTERM, _terminated)
+try:
+    os.kill(os.getpid(), signal.SIGTERM)
+except KeyboardInterrupt:
+    time.sleep({pause})
+    os.kill(os.getpid(), signal.SIGTERM)
+    print("interrupted")
+"""
+
+
+@pytest.mark.parametrize(("pause", "code", "said"), [(0.01, 0, "interrupted\n"), (1.1, -signal.SIGTERM, "")])
+def test_sigterm_that_comes_twice_at_once_is_one(pause, code, said) -> None:
+    """`timeout` sends it to the program and to its group: the program ended by the second, and not with 130."""
+    ran = subprocess.run([sys.executable, "-c", TWICE.format(pause=pause)], capture_output=True, text=True, timeout=60)
+    assert (ran.returncode, ran.stdout, ran.stderr) == (code, said, "")
