@@ -6,6 +6,7 @@ import logging
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
+from functools import partial
 from importlib import metadata
 from typing import Any, TypeVar
 
@@ -25,6 +26,13 @@ PATIENCE = 10.0
 """Seconds for the scheduler to answer."""
 CERTIFICATE = ", and its certificate in DASK_DISTRIBUTED__COMM__TLS__CA_FILE, ...__CLIENT__CERT and ...__CLIENT__KEY"
 """What `tls://` needs beside an address."""
+
+
+ASKED: tuple[tuple[str, Callable[..., str], tuple[str, ...]], ...] = (
+    ("the version of its tissuebench", metadata.version, ("tissuebench",)),
+    ("the code of its tissuebench (SHA-256)", code_version, ()),
+)
+"""What a worker must answer as this program does."""
 
 
 def work_on_cluster(tasks: Sequence[Task], address: str, say: Callable[[str], None]) -> Iterator[PointResult]:
@@ -60,10 +68,11 @@ def on_cluster(
         gone.
     """
     with _connected(address) as client:
-        workers = _check_workers(client, address)
+        own = [function(*arguments) for _, function, arguments in ASKED]
+        workers = _check_workers(client, address, own)
         say(f"{address}: {counted(workers, 'worker')}" if workers else f"{address}: no worker yet, waiting for one")
         try:
-            yield from _rows(client, work, jobs, lost)
+            yield from _rows(client, partial(_checked, own, address, work), jobs, lost)
         except (OSError, CancelledError):
             raise ClusterError(
                 f"the Dask scheduler at {address} is gone; what is finished is kept, the same command goes on with it"
@@ -81,7 +90,10 @@ def _rows(
     known = {future.key: job for future, job in zip(futures, jobs, strict=True)}
     for future in as_completed(futures):
         if future.status == "error":
-            yield lost(known[future.key], _fault(future.exception()))
+            fault = future.exception()
+            if isinstance(fault, ClusterError):  # of a worker that came later
+                raise fault
+            yield lost(known[future.key], _fault(fault))
         else:
             yield future.result()
         future.release()
@@ -115,26 +127,36 @@ def _connected(address: str) -> Iterator[Any]:
             log.setLevel(level)
 
 
-def _check_workers(client: Any, address: str) -> int:
-    """The number of workers; refuses those of another version or other code. Workers that come later are not asked."""
-    asked: Mapping[str, tuple[str, Callable[..., str], tuple[str, ...]]] = {
-        "its tissuebench": ("version ", metadata.version, ("tissuebench",)),
-        "the code of its tissuebench (SHA-256)": ("", code_version, ()),
-    }
+def _check_workers(client: Any, address: str, own: Sequence[str]) -> int:
+    """The number of workers; refuses those of another version or other code. Who comes later answers with each job."""
     answers: Mapping[str, Any] = {}
-    for what, (kind, function, arguments) in asked.items():
-        own = function(*arguments)
+    for expected, (what, function, arguments) in zip(own, ASKED, strict=True):
         try:
             answers = client.run(function, *arguments, on_error="return")
         except OSError:
             raise ClusterError(f"the Dask scheduler at {address} is gone") from None
         for worker, answer in answers.items():
-            if answer != own:
-                raise ClusterError(
-                    f"--scheduler {address}: the worker {worker} answers {answer!r} when asked for {what}; "
-                    f"allowed: {kind}{own}, as here"
-                )
+            if answer != expected:
+                raise _other(address, worker, answer, what, expected)
     return len(answers)
+
+
+def _checked(own: Sequence[str], address: str, work: Callable[[Job], Row], job: Job) -> Row:
+    """The row of a job, by a worker that answers as `own` when it is asked for its version and code."""
+    for expected, (what, function, arguments) in zip(own, ASKED, strict=True):
+        answer = function(*arguments)
+        if answer != expected:
+            import distributed
+
+            worker: Any = distributed.get_worker
+            raise _other(address, worker().address, answer, what, expected)
+    return work(job)
+
+
+def _other(address: str, worker: str, answer: object, what: str, own: str) -> ClusterError:
+    return ClusterError(
+        f"--scheduler {address}: the worker {worker} answers {answer!r} when asked for {what}; allowed: {own}, as here"
+    )
 
 
 def _fault(error: BaseException | None) -> str:

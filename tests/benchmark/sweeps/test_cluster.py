@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 
 from benchmark.resumable import read_rows
-from benchmark.sweeps.cluster import ClusterError, work_on_cluster
+from benchmark.sweeps import cluster as cluster_module
+from benchmark.sweeps.cluster import ClusterError, on_cluster, work_on_cluster
 from benchmark.sweeps.local import work_locally
 from benchmark.sweeps.point import OK, PointResult, Task
 
@@ -101,6 +102,26 @@ def test_a_cluster_gives_what_this_machine_gives(cluster: Cluster, tasks) -> Non
     assert sorted(there) == [1, 2, 3, 4]
     for point, row in here.items():
         assert results(there[point]) == pytest.approx(results(row), rel=1e-9)
+
+
+def test_a_worker_of_other_code_that_comes_later_ends_the_work(tasks, monkeypatch) -> None:
+    """Only the workers that were there at first were asked; its rows were taken."""
+    distributed = pytest.importorskip("distributed")
+    what, _, arguments = cluster_module.ASKED[1]
+    other = (cluster_module.ASKED[0], (what, lambda: "another", arguments))
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
+    ) as one, distributed.Client(one):  # fmt: skip
+        work = on_cluster(abs, [-1, -2], lambda *_: 0, one.scheduler_address, lambda _: seen(monkeypatch, other))
+        with pytest.raises(ClusterError, match=r"the worker .* answers 'another' when asked for the code of its"):
+            list(work)
+        monkeypatch.undo()
+        assert sorted(on_cluster(abs, [-1, -2], lambda *_: 0, one.scheduler_address, silent)) == [1, 2]
+
+
+def seen(monkeypatch, other) -> None:
+    """From now on, after the workers at first were asked, they answer otherwise."""
+    monkeypatch.setattr(cluster_module, "ASKED", other)
 
 
 def test_a_killed_worker_loses_nothing(cluster: Cluster, tasks) -> None:
