@@ -85,6 +85,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         if "--debug" not in arguments:  # what NumPy says of an overflow tried on the way is for who mends the program
             warnings.filterwarnings("ignore", category=RuntimeWarning)
+            sys.warnoptions.append("ignore::RuntimeWarning")  # for the processes that are started
         code = app(args=arguments or ["--help"], prog_name=PROGRAM, standalone_mode=False)
     except KeyboardInterrupt:
         code = EXIT_INTERRUPTED

@@ -176,3 +176,23 @@ def test_sigterm_that_comes_twice_at_once_is_one(pause, code, said) -> None:
     """`timeout` sends it to the program and to its group: the program ended by the second, and not with 130."""
     ran = subprocess.run([sys.executable, "-c", TWICE.format(pause=pause)], capture_output=True, text=True, timeout=60)
     assert (ran.returncode, ran.stdout, ran.stderr) == (code, said, "")
+
+
+OVERFLOW = """
+import multiprocessing, numpy as np
+from benchmark.child_processes import start_child
+from benchmark.cli.app import main
+main(["--version", *{debug}])
+child = multiprocessing.get_context("spawn").Process(target=np.exp, args=(np.array(1e4),))
+start_child(child)
+child.join()
+"""
+
+
+@pytest.mark.parametrize("debug", [[], ["--debug"]])
+def test_what_numpy_says_of_an_overflow_in_a_process_is_kept_for_debugging(debug) -> None:
+    """The model's own process said it on standard error, under --quiet, too."""
+    program = OVERFLOW.format(debug=debug)
+    ran = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+    assert ran.returncode == 0
+    assert ("overflow encountered in exp" in ran.stderr) == bool(debug)
