@@ -47,8 +47,9 @@ SURE = 10.0
 """Standard deviations of the difference of two shifts beyond which they differ."""
 LEAST_FRAMES = 3.0
 """Frames by which they must differ besides."""
-DOUBTED = 6.0
-"""Standard deviations of that difference beyond which the shift's own deviation takes half of it along."""
+DOUBTED = 8.0
+"""Standard deviations of that difference beyond which the shift's own deviation takes half of it along: sound films of
+few pictures in motion have up to 7."""
 
 
 @dataclass(frozen=True)
