@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
@@ -14,6 +16,8 @@ from benchmark.models.wave_parts import PreparedWave, Solution, refuse_fibres, v
 from wavemodel import LayeredWave, NotCoveredError, WaveDiscretisation, WaveError
 
 MM = 1e3
+NEAR = 2.0
+"""Times the depth of a peak force by small strain to which finite strain is worked out first."""
 FRICTION = (
     "friction acts as while the tool goes in: the way back, on which tissue slides the other way, is that of the way in"
 )
@@ -50,18 +54,51 @@ def layered_wave(scenario: Scenario) -> PreparedWave:
 
 
 def _to_peak(scenario: Scenario) -> PreparedWave:
-    """The corrected wave, followed deep where the scenario's peak is beyond its usual range."""
+    """The corrected wave, as deep as the peak by small strain needs, as is usual, or deep, whichever first covers it.
+
+    A soft thick block under a small tool takes minutes to its usual depth, and a second to a tenth of that.
+    """
     try:
-        return _prepared(scenario, "corrected", to_peak=True)
+        return _prepared(scenario, "corrected", reach=_near(scenario))
     except NotCoveredError:
         raise
     except WaveError:
-        return _prepared(scenario, "deep", to_peak=True)
+        pass
+    try:
+        return _prepared(scenario, "corrected", reach=np.inf)
+    except WaveError:
+        return _prepared(scenario, "deep", reach=np.inf)
 
 
-def _prepared(scenario: Scenario, large_press: str, *, to_peak: bool = False) -> PreparedWave:
-    """One wave; `to_peak`, refuse it where the scenario's peak is beyond its range."""
-    wave = LayeredWave(
+def _near(scenario: Scenario) -> float:
+    """The depth of a load's peak, m; of a force twice what small strain foretells of the relaxed layers."""
+    if scenario.load.control == "depth":
+        return scenario.load.peak
+    lost = max(math.fsum(term.g for term in layer.relaxation) for layer in scenario.tissue.layers)
+    try:
+        linear = _wave(scenario, "linear", None)
+    except WaveError:  # friction, or fibres, which small strain does not have
+        return np.inf
+    return NEAR * float(linear.law.depth_at(np.array([scenario.load.peak / (1.0 - lost)]))[0])
+
+
+def _prepared(scenario: Scenario, large_press: str, *, reach: float | None = None) -> PreparedWave:
+    """One wave; with a `reach` (m) it must cover the scenario's peak, and is set up no deeper than that."""
+    wave = _wave(scenario, large_press, reach if reach is not None and np.isfinite(reach) else None)
+    if reach is not None:
+        peak = np.array([scenario.load.peak])
+        _ = wave.law(peak) if scenario.load.control == "depth" else wave.law.depth_at(peak)
+    return PreparedWave(
+        follow=lambda drive: wave.run(drive.control, drive.time, drive.value),
+        unknowns=wave.unknowns,
+        choices=WaveChoices(large_press, wave.window, wave.modes),
+        warnings=(FRICTION,) if scenario.tool.contact == "rigid_frictional" else (),
+        picture=lambda drive: _picture(wave, scenario.tool.radius, drive),
+    )
+
+
+def _wave(scenario: Scenario, large_press: str, reach: float | None) -> LayeredWave:
+    return LayeredWave(
         wave_layers(scenario.tissue.layers),
         wave_tool(scenario),
         discretisation=WaveDiscretisation(window=scenario.wave.window, modes=scenario.wave.modes),
@@ -72,16 +109,7 @@ def _prepared(scenario: Scenario, large_press: str, *, to_peak: bool = False) ->
         pretension=scenario.physics.pretension,
         physics=wave_physics(scenario),
         slip=wave_slip(scenario),
-    )
-    if to_peak:
-        peak = np.array([scenario.load.peak])
-        _ = wave.law(peak) if scenario.load.control == "depth" else wave.law.depth_at(peak)
-    return PreparedWave(
-        follow=lambda drive: wave.run(drive.control, drive.time, drive.value),
-        unknowns=wave.unknowns,
-        choices=WaveChoices(large_press, wave.window, wave.modes),
-        warnings=(FRICTION,) if scenario.tool.contact == "rigid_frictional" else (),
-        picture=lambda drive: _picture(wave, scenario.tool.radius, drive),
+        reach=reach,
     )
 
 
@@ -102,9 +130,13 @@ def _falling_back(scenario: Scenario, corrected: PreparedWave) -> PreparedWave:
         except WaveError:
             return deeper(drive)
 
+    @cache
+    def deep() -> PreparedWave:
+        return _prepared(scenario, "deep")
+
     def deeper(drive: Drive) -> Solution:
         try:
-            return _prepared(scenario, "deep").follow(drive)
+            return deep().follow(drive)
         except WaveError as error:
             solution = _small_strain(scenario).follow(drive)
             return solution.warned(_fell_back(error))

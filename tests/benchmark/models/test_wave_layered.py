@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from benchmark.files import load_scenario
-from benchmark.models import Drive, ModelResult, UncoveredError, prepare, scenario_drive
+from benchmark.models import Drive, ModelResult, UncoveredError, prepare, scenario_drive, wave_layered
 from benchmark.models.wave_parts import wave_tool
+from wavemodel import LayeredWave
 
 SHORT = {"load.observations": "4"}
 FRICTION = "physics.friction_coefficient"
@@ -52,6 +53,30 @@ def test_friction_is_followed_in_loading_and_the_way_back_is_said_to_be_left_out
     found, truth = (prepare(model, scenario).run(drive) for model in ("wave", "fem"))
     np.testing.assert_allclose(found.top_deflection, truth.top_deflection, rtol=0.015)
     assert "the way back" in " ".join(found.warnings)
+
+
+@pytest.mark.parametrize(("load", "near"), [({"load.peak": "0.05 N"}, 2.0), ({"load.control": "depth"}, 1.0)])
+def test_a_shallow_press_is_set_up_no_deeper_than_it_needs(
+    monkeypatch: pytest.MonkeyPatch, load: dict[str, str], near: float
+) -> None:
+    """A tool of 3 mm on 15 mm of gel took two minutes for a press of 0.05 mm."""
+    reaches = []
+
+    def wave(*arguments, reach, large_press, **settings):
+        reaches.append((large_press, reach))
+        return LayeredWave(*arguments, reach=reach, large_press=large_press, **settings)
+
+    monkeypatch.setattr(wave_layered, "LayeredWave", wave)
+    if "load.control" in load:
+        load = load | {"load.peak": "0.1 mm"}
+    scenario = load_scenario("skin-5N", {**SHORT, **load})
+    found = prepare("wave", scenario).run(scenario_drive(scenario))
+    strains, depths = zip(*reaches, strict=True)
+    assert strains[-1] == "corrected"
+    assert depths[-1] == pytest.approx(near * found.depth.max(), rel=0.05)
+    assert None not in [reach for strain, reach in reaches if strain == "corrected"]
+    whole = prepare("wave", load_scenario("skin-5N", {**SHORT, **load, "wave.large_press": "corrected"}))
+    np.testing.assert_allclose(found.depth, whole.run(scenario_drive(scenario)).depth, rtol=2e-3)
 
 
 def test_a_coefficient_of_friction_without_effect_has_none_in_the_wave() -> None:
