@@ -86,7 +86,7 @@ Where the specimens' heights are given, speeds and depths may be those over the 
 PROTOCOL_TIME = 0.05
 """Trials whose segments differ may still be of one motion if their durations agree within this share. First choice."""
 PROTOCOL_DEPTH = 0.2
-"""And if their depths over time agree within this share of the travel. First choice."""
+"""And if their depths (or prescribed forces) over time agree within this share of the travel. First choice."""
 MOST_ODD = 0.25
 """Above this share of trials with another motion the condition is refused, below they are left out. First choice."""
 SHORT_REST = 0.15

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from bench_hw.tables import MarkerTable, TrialTable
 from benchmark.discovery import criteria
-from benchmark.discovery.trials.segments import segments
+from benchmark.discovery.trials.segments import prescribed, segments
 from benchmark.files import Session, Trial
 
 REMEMBERED, LEAST_REMEMBERED = 240, 3
@@ -27,7 +27,8 @@ def by_cycles(session: Session) -> tuple[Session, tuple[str, ...]]:
     """
     if len(session.trials) >= criteria.LEAST_TRIALS:
         return session, ()
-    split = {trial.name: tuple(_presses(trial)) for trial in session.trials}
+    by_force = session.drive == "force"
+    split = {trial.name: tuple(_presses(trial, by_force)) for trial in session.trials}
     long = {name: parts for name, parts in split.items() if len(parts) >= criteria.LEAST_TRIALS}
     if not long:
         return session, ()
@@ -39,9 +40,9 @@ def by_cycles(session: Session) -> tuple[Session, tuple[str, ...]]:
     return replace(session, trials=trials), warnings
 
 
-def _presses(trial: Trial) -> Iterator[Trial]:
+def _presses(trial: Trial, by_force: bool) -> Iterator[Trial]:
     """The presses of a record, numbered from 1, each from the middle of the rest before it to that after it."""
-    marks = _borders(trial.table.time, trial.table.depth)
+    marks = _borders(trial.table.time, prescribed(trial.table.force) if by_force else trial.table.depth)
     remembered = _remembered(len(marks) - 1)
     for number, (first, last) in enumerate(pairwise(marks), start=1):
         table, markers = _rows(trial.table, first, last), trial.markers

@@ -26,7 +26,7 @@ from benchmark.discovery.trials.rows import (
     record,
     resting_grid,
 )
-from benchmark.discovery.trials.segments import FITTED, scatter_of, segments, stages, steadied
+from benchmark.discovery.trials.segments import FITTED, prescribed, scatter_of, segments, stages, steadied
 from benchmark.discovery.trials.study import ConditionData, Study
 from benchmark.errors import InputError
 from benchmark.files import Camera, Session, Tissue, Trial, stretched_tissue
@@ -238,13 +238,17 @@ def _raw(session: Session, trial: Trial, warnings: list[str]) -> RawTrial:
     interval = np.diff(time)
     if interval.max() > criteria.LONG_GAP * np.median(interval):
         warnings.append(f"trial {trial.name}: a gap of {interval.max():.3g} s between rows; nothing is filled in")
-    pieces = tuple(segments(time, depth))
+    by_force = session.drive == "force"
+    led = prescribed(force) if by_force else depth
+    pieces = tuple(segments(time, led))
     if not any(piece.kind == "press" for piece in pieces):
-        raise InputError(f"{place}: the depth never rises by a tenth of its range; a press is needed.")
+        what = "force" if by_force else "depth"
+        raise InputError(f"{place}: the {what} never rises by a tenth of its range; a press is needed.")
     seen = marker_frames(trial, session.camera) if session.camera is not None and _over_hole(trial) else None
     frames, markers = seen if seen is not None else (None, None)
     rate, earlier = acceleration(time, depth), _before(trial)
-    return RawTrial(trial, time, depth, force, rate, frames, markers, pieces, depth is not read, earlier)
+    steady = depth is not read
+    return RawTrial(trial, time, depth, force, rate, frames, markers, pieces, led, by_force, steady, earlier)
 
 
 def _before(trial: Trial) -> Array:

@@ -15,7 +15,7 @@ from benchmark.discovery.discovery_result import Array
 from benchmark.discovery.trials.rows import RawTrial
 from benchmark.discovery.trials.segments import Segment, without_dwells
 from benchmark.errors import InputError
-from benchmark.files.sessions.proposal import Motion, motion_of
+from benchmark.files.sessions.proposal import JUMP_ROWS, Motion, motion_of
 from benchmark.files.sessions.specimens import ONE_HEIGHT, gap_at_zero_depth
 
 
@@ -97,7 +97,7 @@ def _apart(group: Sequence[RawTrial]) -> list[list[RawTrial]]:
     """Two or more trials a motion, each in a condition of its own; none where that leaves out more than single ones."""
     motions: list[tuple[Motion, list[RawTrial]]] = []
     for raw in group:
-        motion = motion_of(raw.trial.table)
+        motion = motion_of(raw.trial.table, by_force=raw.by_force)
         mates = next((mates for other, mates in motions if other.alike(motion)), None)
         if mates is None:
             motions.append((motion, [raw]))
@@ -203,12 +203,16 @@ def _without_rests(raw: RawTrial, places: AbstractSet[int]) -> RawTrial:
 
 @dataclass(frozen=True, eq=False)
 class _Extent:
-    """How deep, how hard and how fast trials press, each (R,): m, N, m/s; `height` of each specimen, m, or NaN."""
+    """How deep, how hard and how fast trials press, each (R,): m, N, m/s; `height` of each specimen, m, or NaN.
+
+    Where the force was prescribed (`by_force`), the depth is an answer and is not asked: `speed` is the force's, N/s.
+    """
 
     depth: Array
     force: Array
     speed: Array
     height: Array
+    by_force: bool
 
     @staticmethod
     def of(group: Sequence[RawTrial]) -> _Extent:
@@ -217,16 +221,17 @@ class _Extent:
             np.array([np.ptp(raw.force) for raw in group]),
             np.array([_speed(raw) for raw in group]),
             np.array([_height(raw) for raw in group]),
+            all(raw.by_force for raw in group),
         )
 
     @property
     def _presses(self) -> tuple[Array, ...]:
         """What may be alike in one protocol: depth, depth over the specimen's height, or force."""
-        return (self.depth, self.force, *self._over_height(self.depth))
+        return (self.force,) if self.by_force else (self.depth, self.force, *self._over_height(self.depth))
 
     @property
     def _rates(self) -> tuple[Array, ...]:
-        return (self.speed, *self._over_height(self.speed))
+        return (self.speed,) if self.by_force else (self.speed, *self._over_height(self.speed))
 
     def _over_height(self, values: Array) -> tuple[Array, ...]:
         return (values / self.height,) if np.isfinite(self.height).all() else ()
@@ -247,6 +252,9 @@ class _Extent:
         return np.asarray(np.max(far, axis=0) > 0.5 * np.log(criteria.PROTOCOL_SPREAD))
 
     def __str__(self) -> str:
+        if self.by_force:
+            force, rate = self.force, self.speed
+            return f"force up to {force.min():.3g} to {force.max():.3g} N, at {rate.min():.3g} to {rate.max():.3g} N/s"
         depth, speed = 1e3 * self.depth, 1e3 * self.speed
         return (
             f"peak depth {depth.min():.3g} to {depth.max():.3g} mm, speed {speed.min():.3g} to {speed.max():.3g} mm/s"
@@ -265,11 +273,15 @@ def _height(raw: RawTrial) -> float:
 
 
 def _speed(raw: RawTrial) -> float:
-    """Of the longest way in of the first press, m/s."""
+    """Of the longest way in of the first press, m/s, or N/s where the force was prescribed.
+
+    A weight that is put on within few rows has no rate that these show: they count as so many.
+    """
     strokes = [piece for piece in raw.pieces if piece.kind == "press" and piece.cycle == 1]
     ends = [(piece.first, min(piece.last, raw.time.size - 1)) for piece in strokes]
-    first, last = max(ends, key=lambda each: abs(raw.depth[each[1]] - raw.depth[each[0]]))
-    return float(abs(raw.depth[last] - raw.depth[first]) / max(raw.time[last] - raw.time[first], 1e-9))
+    first, last = max(ends, key=lambda each: abs(raw.led[each[1]] - raw.led[each[0]]))
+    least = JUMP_ROWS * float(np.median(np.diff(raw.time))) if raw.by_force else 1e-9
+    return float(abs(raw.led[last] - raw.led[first]) / max(raw.time[last] - raw.time[first], least))
 
 
 def _timed_like(raw: RawTrial, model: RawTrial) -> RawTrial | None:
@@ -277,8 +289,8 @@ def _timed_like(raw: RawTrial, model: RawTrial) -> RawTrial | None:
     duration, other = np.ptp(raw.time), np.ptp(model.time)
     if abs(duration / other - 1.0) > criteria.PROTOCOL_TIME:
         return None
-    shown = np.interp(model.time - model.time[0], raw.time - raw.time[0], raw.depth)
-    if np.abs(shown - model.depth).max() > criteria.PROTOCOL_DEPTH * np.ptp(model.depth):
+    shown = np.interp(model.time - model.time[0], raw.time - raw.time[0], raw.led)
+    if np.abs(shown - model.led).max() > criteria.PROTOCOL_DEPTH * np.ptp(model.led):
         return None
     stamps = [model.time[piece.first] - model.time[0] for piece in model.pieces]
     edges = [int(np.searchsorted(raw.time - raw.time[0], stamp - 1e-9)) for stamp in stamps] + [raw.time.size]

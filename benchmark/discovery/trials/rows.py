@@ -48,7 +48,8 @@ class RawTrial:
 
     A marker that a frame missed is interpolated in time; one that was hardly seen is NaN. Where the depth's scatter was
     the sensor's, and is taken out of it, `steadied` says so. `earlier` (k, 2) has times and depths by which the record
-    goes on from its beginning to the trial, where that is cut from a longer one.
+    goes on from its beginning to the trial, where that is cut from a longer one. `led` is what the rig prescribed, by
+    which segments and protocols are told: the depth, m, or (`by_force`) the force over its least, N.
     """
 
     trial: Trial
@@ -59,6 +60,8 @@ class RawTrial:
     frames: Array | None
     markers: Array | None
     pieces: tuple[Segment, ...]
+    led: Array
+    by_force: bool = False
     steadied: bool = False
     earlier: Array = field(default_factory=no_rows)
 

@@ -185,6 +185,19 @@ def _numbered(pieces: list[tuple[int, int, str]]) -> list[Segment]:
     return out
 
 
+def prescribed(force: Array) -> Array:
+    """The course of a force (n,) that the rig prescribed, N over its least, averaged over rows where it scatters much.
+
+    Segments of such a trial are told by it: the depth is the answer, and creeps while the force stands.
+    """
+    from scipy.ndimage import uniform_filter1d
+
+    width = criteria.LEVEL_WIDTH * max(float(np.ptp(force)), 1e-300)
+    rows = int(np.clip((criteria.SMOOTHED * scatter_of(force) / width) ** 2, 1, max(force.size // 20, 1)))
+    course = uniform_filter1d(force, rows, mode="nearest")
+    return np.asarray(course - course.min())
+
+
 def scatter_of(signal: Array) -> float:
     """Standard deviation of what a signal (n,) scatters by from row to row, by third differences; 0 for a few rows."""
     if signal.size <= FITTED:

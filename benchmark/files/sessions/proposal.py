@@ -8,7 +8,7 @@ only a person can say is marked SAY.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +36,9 @@ from benchmark.files.sources import KeyPath, Source, is_file
 
 ALIKE = 0.1
 """Of their mean, within which speeds, depths and holds are of one protocol; labs set them to round numbers."""
+JUMP_ROWS = 5
+"""Rows that a prescribed force takes to rise at least, as far as its rate is compared, and over which it is averaged
+where its holds are looked for: a weight put on by hand begins and ends anywhere between two of them. First choice."""
 OFF_GRID = 0.2
 """Of the spacing, within which markers at rest stand where a grid has them: printed by hand, and seen at a slant."""
 NOTHING: Overrides = {}
@@ -45,19 +48,24 @@ SPECIMEN_FILE, CAMERA_FILE = "specimen.toml", "camera.toml"
 
 @dataclass(frozen=True)
 class Motion:
-    """How a trial moved: speed of the first way in (m/s), greatest depth (m), longest hold (s), presses."""
+    """How a trial moved: speed of the first way in (m/s), greatest depth (m), longest hold (s), presses.
+
+    Where the force was prescribed (`by_force`) speed and depth are the force's: N/s, and N over its least.
+    """
 
     speed: float
     depth: float
     hold: float
     presses: int
+    by_force: bool = False
 
     @property
     def name(self) -> str:
         """Of the condition, in words that a path may hold."""
         held = f"_held_{_plain(self.hold)}s" if self.hold > 0.2 else ""
         many = f"_{self.presses}_presses" if self.presses > 1 else ""
-        return f"{_plain(1e3 * self.speed)}mm_s_to_{_plain(1e3 * self.depth)}mm{held}{many}"
+        scale, unit = (1.0, "N") if self.by_force else (1e3, "mm")
+        return f"{_plain(scale * self.speed)}{unit}_s_to_{_plain(scale * self.depth)}{unit}{held}{many}"
 
     def alike(self, other: Motion) -> bool:
         """Whether two trials are of one protocol."""
@@ -71,15 +79,22 @@ def _plain(value: float) -> str:
     return f"{float(f'{value:.2g}'):g}"
 
 
-def motion_of(table: TrialTable) -> Motion:
-    """How a trial moved; its speed is that of the middle of the first way in."""
-    presses, hold = phases(table)
+def motion_of(table: TrialTable, *, by_force: bool = False) -> Motion:
+    """How a trial moved, or what force it was given; its speed is that of the middle of the first way in."""
+    if by_force:
+        table = replace(table, depth=table.force - table.force.min())
+        mean = np.convolve(np.pad(table.depth, JUMP_ROWS // 2, mode="edge"), np.ones(JUMP_ROWS) / JUMP_ROWS, "valid")
+        presses, hold = phases(replace(table, depth=mean))
+    else:
+        presses, hold = phases(table)
     deepest = float(table.depth.max())
     first = int(np.argmax(table.depth >= 0.8 * deepest))
     start = int(np.flatnonzero(table.depth[: first + 1] <= 0.2 * deepest)[-1]) if first else 0
     duration = float(table.time[first] - table.time[start])
+    if by_force:
+        duration = max(duration, JUMP_ROWS * float(np.median(np.diff(table.time))))
     speed = float(table.depth[first] - table.depth[start]) / duration if duration > 0.0 else 0.0
-    return Motion(speed, deepest, hold, presses)
+    return Motion(speed, deepest, hold, presses, by_force)
 
 
 @dataclass(frozen=True)

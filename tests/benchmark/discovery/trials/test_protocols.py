@@ -15,8 +15,8 @@ SESSION = 'schema = 1\nname = "mixed"\n[tool]\nradius = "5 mm"\ncontact = "rigid
 def session(tmp_path):
     """A session of trials, each (time s, depth mm, force N, height mm or None)."""
 
-    def make(trials, conditions=None):
-        lines = [SESSION]
+    def make(trials, conditions=None, drive="depth"):
+        lines = [f'{SESSION}[drive]\nchannel = "{drive}"\n']
         for number, (time, depth, force, height) in enumerate(trials):
             name = f"trial_{number:02d}.csv"
             columns, header = [time, depth, force], "time_s,depth_mm,force_N"
@@ -152,3 +152,51 @@ def test_specimens_are_told_apart_by_their_height_and_taken_for_one_without(sess
     assert prepare(made, 100).conditions[0].specimens.tolist() == [0, 1, 0, 2, 1, 0]
     plain = session([press(3.0) for _ in heights])
     assert prepare(plain, 100).conditions[0].specimens.tolist() == [0] * 6
+
+
+def weighed(number, *, steps=(1.0, 2.0, 3.0), low=0.1, scatter=5e-3, rate=10.0, rise=0.0):
+    """Weights (N) put on one by one, 4 s each, at moments of their own between two rows, on a gel that creeps.
+
+    The depth (mm) scatters by `scatter`, its answer differs by a tenth from trial to trial.
+    """
+    rng = np.random.default_rng([number, 7])
+    fine = np.arange(0.0, 4.0 * len(steps) + 8.0, 0.01)
+    put = 2.0 + 4.0 * np.arange(len(steps)) + rng.uniform(0.0, 1.0 / rate, len(steps))
+    rises = np.clip((fine[:, None] - put) / max(rise, 0.01), 0.0, 1.0)
+    force = low + rises @ np.diff([0.0, *steps])
+    force = np.where(fine > put[-1] + 4.0, low, force)
+    slow = np.zeros(fine.size)
+    for k in range(1, fine.size):
+        slow[k] = slow[k - 1] + 0.01 * (force[k - 1] - low - slow[k - 1])
+    depth = (0.1 + 0.01 * rng.normal()) * (force - low + 0.5 * slow)
+    rows = slice(None, None, round(100.0 / rate))
+    read = depth[rows] + scatter * rng.normal(size=fine[rows].size)
+    return fine[rows], read, force[rows] + 2e-3 * rng.normal(size=fine[rows].size), None
+
+
+def test_equal_weights_are_one_protocol_whatever_depth_answers(session) -> None:
+    """By the depth their speeds differ up to fivefold: noise tells where its steps begin and end."""
+    study = prepare(session([weighed(number) for number in range(8)], drive="force"), 100)
+    assert study.trial_count == 8
+    assert not any("left out" in text for text in study.warnings)
+    assert holds(study) == 3
+
+
+def test_a_depth_that_differs_threefold_under_one_force_is_one_protocol(session) -> None:
+    made = [weighed(number) for number in range(6)]
+    made = [(time, (1.0 + number) * depth, force, None) for number, (time, depth, force, _) in enumerate(made)]
+    assert prepare(session(made, drive="force"), 100).trial_count == 6
+
+
+def test_forces_that_rise_at_other_rates_are_taken_apart_by_the_force(session) -> None:
+    fast = [weighed(number, steps=(3.0,)) for number in range(4)]
+    slow = [weighed(number, steps=(3.0,), rise=3.5) for number in range(4)]
+    study = prepare(session([*fast, *slow], drive="force"), 100)
+    assert sorted(condition.size for condition in study.conditions) == [4, 4]
+    assert any("N_s_to_3N" in text for text in study.warnings)
+
+
+def test_forces_of_protocols_that_no_other_trial_has_are_told_in_newtons(session) -> None:
+    made = [weighed(number, steps=(4.0**number,)) for number in range(5)]
+    with pytest.raises(InputError, match=r"different protocols .*; force up to .* N, at .* N/s"):
+        prepare(session(made, drive="force"), 100)
