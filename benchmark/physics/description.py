@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal, TypeAlias
 
-Sign: TypeAlias = Literal["unloading", "hold", "second_rate", "lift_off", "interface"]
+Sign: TypeAlias = Literal["unloading", "hold", "second_rate", "lift_off", "interface", "free_force"]
 SIGNS = MappingProxyType[Sign, str](
     {
         "unloading": "unloading",
@@ -15,9 +15,10 @@ SIGNS = MappingProxyType[Sign, str](
         "second_rate": "a second rate",
         "lift_off": "a lift-off",
         "interface": "a second layer or a clamp",
+        "free_force": "a force that answers a depth (here it was prescribed, and stands because it was held)",
     }
 )
-"""What a session's motion or set-up may have, in words, without which some effects cannot show."""
+"""What a session's motion, drive or set-up may have, in words, without which some effects cannot show."""
 
 
 @dataclass(frozen=True)

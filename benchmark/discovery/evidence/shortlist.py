@@ -97,9 +97,10 @@ def remark(count: int, total: int) -> tuple[str, ...]:
 
 def shown(study: Study) -> frozenset[Sign]:
     """The signs that a session's trials have."""
-    found: set[Sign] = set()
+    found: set[Sign] = set() if study.by_force else {"free_force"}
     for condition in study.conditions:
-        if _travel(condition, "unload_high", "unload_low") >= criteria.LEAST_UNLOADED * condition.around.peak_depth:
+        back = _fallen(condition) if study.by_force else _travel(condition, "unload_high", "unload_low")
+        if back >= criteria.LEAST_UNLOADED * condition.around.peak_depth:
             found.add("unloading")
         if _rows(condition, "hold").sum() >= criteria.LEAST_ROWS:
             found.add("hold")
@@ -147,6 +148,14 @@ def _travel(condition: ConditionData, *phases: str) -> float:
     """How far the depth goes in these phases, m, in the middle one of the trials."""
     depth = condition.depth[:, _rows(condition, *phases)]
     return float(np.median(np.ptp(depth, axis=1))) if depth.size else 0.0
+
+
+def _fallen(condition: ConditionData) -> float:
+    """How far the depth comes back from what it had reached, m, in the middle one of the trials.
+
+    A weight is off between two rows, so that no row is of the way back.
+    """
+    return float(np.median(np.max(np.maximum.accumulate(condition.depth, axis=1) - condition.depth, axis=1)))
 
 
 def _speeds(condition: ConditionData) -> list[float]:

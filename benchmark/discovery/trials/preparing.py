@@ -78,7 +78,9 @@ def prepare(session: Session, rows: int) -> Study:
     warnings += [*_scatter(raw), *_guided(raw)]
     interval = float(np.median([np.median(np.diff(r.time)) for r in raw]))
     step = float(np.median([_step(r) for r in raw]))
-    return Study(conditions, grid, camera.distance if camera else None, interval, step, tuple(warnings))
+    return Study(
+        conditions, grid, camera.distance if camera else None, interval, step, tuple(warnings), session.drive == "force"
+    )
 
 
 def _over_hole(trial: Trial) -> bool:

@@ -88,6 +88,8 @@ class Study:
     depth_step : float
         The smallest change that the depths show, m: their rounding or their scatter.
     warnings : tuple of str
+    by_force : bool
+        Whether the force was prescribed, and the depth is the answer.
     """
 
     conditions: tuple[ConditionData, ...]
@@ -96,6 +98,7 @@ class Study:
     raw_interval: float
     depth_step: float
     warnings: tuple[str, ...]
+    by_force: bool = False
 
     @property
     def names(self) -> tuple[str, ...]:

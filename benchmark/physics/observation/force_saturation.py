@@ -16,6 +16,7 @@ DESCRIPTION = EffectDescription(
     acts_on="observation",
     sentence="The force sensor reaches the end of its range: readings stop at a limit.",
     equation="F_read = F - s ln(1 + exp((F - limit) / s)), s = softness limit",
+    needs=(("free_force",),),
     source="clipping of an amplifier; smooth minimum",
     parameters=(
         logarithmic("limit", "N", 1e-3, 1e3, "largest reading"),

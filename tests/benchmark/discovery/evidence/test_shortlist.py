@@ -83,8 +83,8 @@ def condition(*stages, layers=1, hole=np.inf):
     )  # fmt: skip
 
 
-def study(*conditions, layout=None):
-    return SimpleNamespace(conditions=conditions, layout=layout)
+def study(*conditions, layout=None, by_force=False):
+    return SimpleNamespace(conditions=conditions, layout=layout, by_force=by_force)
 
 
 LOADING = ("load", PEAK, 2.0)
@@ -108,7 +108,7 @@ AIR = ("after_lift_off", -0.5e-3, 1.0)
     ],
 )
 def test_the_signs_of_a_session_are_those_of_its_motion_and_layers(made, expected):
-    assert shown(made) == expected
+    assert shown(made) == expected | {"free_force"}
 
 
 def test_loading_alone_shows_stiffening_and_a_floor_but_nothing_of_rate_memory_or_return():
@@ -134,6 +134,23 @@ def test_what_another_motion_would_show_is_what_lacks_no_layer_and_no_marker():
 def test_slip_needs_something_to_slide_on():
     assert missing(study(condition(LOADING, *BACK)), BY_SLUG["interface_slip"]) == ("a second layer or a clamp",)
     assert missing(study(condition(LOADING, *BACK, layers=2)), BY_SLUG["interface_slip"]) == ()
+
+
+def test_a_prescribed_force_that_stands_shows_no_saturation_and_no_motion_would():
+    """At the top it is flat because it is held there."""
+    held = study(condition(LOADING, HOLD, *BACK, AIR), by_force=True)
+    assert [slug for slug, lacks in not_shown(held, catalogue()).items() if "prescribed" in lacks] == [
+        "force_saturation"
+    ]
+    assert "force_saturation" not in unseen(held, catalogue())
+    assert missing(study(condition(LOADING)), BY_SLUG["force_saturation"]) == ()
+
+
+def test_a_weight_that_is_off_between_two_rows_is_an_unloading():
+    """Its way back has no row: the depth falls from one rest to the next."""
+    off = condition(LOADING, HOLD, ("hold", 0.1 * PEAK, 1e-6))
+    assert "unloading" in shown(study(off, by_force=True))
+    assert "unloading" not in shown(study(condition(LOADING, HOLD), by_force=True))
 
 
 def test_what_shows_in_markers_alone_needs_them():

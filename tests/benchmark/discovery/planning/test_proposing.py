@@ -91,7 +91,9 @@ def test_many_trials_of_a_session_are_not_asked_for_again(monkeypatch, there, al
     seen = {"same again": (again, 1.0), deeper.name: (deeper, alone)}
     monkeypatch.setattr(proposing, "rivals", lambda found: (_rival("a"), _rival("b")))
     monkeypatch.setattr(proposing, "_with_this_tool", lambda *_: dict(seen))
-    study = SimpleNamespace(conditions=[SimpleNamespace(size=there, name="slow", around=_condition("hole").around)])
+    study = SimpleNamespace(
+        by_force=False, conditions=[SimpleNamespace(size=there, name="slow", around=_condition("hole").around)]
+    )
     found = propose(_found(study))
     if trials is None:
         assert found is None
@@ -123,7 +125,7 @@ def test_what_decides_goes_before_what_is_quick(monkeypatch, sizes, chosen, tria
     monkeypatch.setattr(proposing, "rivals", lambda found: standing)
     monkeypatch.setattr(proposing, "_with_this_tool", lambda *_: {"same again": (same_again(usual), 1.0), **menus})
     monkeypatch.setattr(proposing, "_calibrations", lambda *_: block)
-    study = SimpleNamespace(conditions=[SimpleNamespace(size=10, name="slow")])
+    study = SimpleNamespace(by_force=False, conditions=[SimpleNamespace(size=10, name="slow")])
     session = _found(study)
     found = propose(session)
     assert (found.choice, found.trials) == (chosen, trials)
@@ -157,7 +159,7 @@ def test_what_a_session_has_of_the_menu_is_not_proposed_again(monkeypatch) -> No
     conditions = [
         SimpleNamespace(size=size, name=name, around=_condition("hole").around) for name, size in sizes.items()
     ]
-    study = SimpleNamespace(conditions=conditions)
+    study = SimpleNamespace(by_force=False, conditions=conditions)
     found = propose(_found(study))
     assert seen_from == ["press"]
     assert found.choice == "slower"
@@ -185,14 +187,15 @@ def test_what_was_not_looked_for_is_shown_before_rivals_are_separated(monkeypatc
     """Of a relaxing sheet pressed without a hold dry friction was named, and experiments were spent on its rivals."""
     monkeypatch.setattr(proposing, "rivals", lambda found: tuple(map(_rival, standing)))
     monkeypatch.setattr(proposing, "_simulated", lambda *_: 0.0)
-    found = propose(_found(SimpleNamespace(conditions=(_unheld(),)), verdict, catalogue()))
+    found = propose(_found(SimpleNamespace(conditions=(_unheld(),), by_force=False), verdict, catalogue()))
     assert (found.choice, found.trials, found.opens) == ("longer hold", 3, MEMORY)
     assert found.rivals == ("dry_friction", "+".join(MEMORY))
     assert "hold for 60 s" in found.words
     assert '"hold"' in found.toml
     assert (found.menu, np.isnan([found.separation, found.separation_now]).all()) == ({}, True)
     again = propose(
-        _found(SimpleNamespace(conditions=(_unheld(),)), verdict, catalogue()), allowed=Allowed(done={"longer hold"})
+        _found(SimpleNamespace(conditions=(_unheld(),), by_force=False), verdict, catalogue()),
+        allowed=Allowed(done={"longer hold"}),
     )
     assert (again.choice, again.opens) == ("slower", MEMORY)
 
@@ -201,10 +204,12 @@ def test_where_trials_agree_or_a_bench_cannot_nothing_is_shown(monkeypatch) -> N
     monkeypatch.setattr(proposing, "rivals", lambda found: (_rival(),))
     monkeypatch.setattr(proposing, "_simulated", lambda *_: 0.0)
     for verdict in ("no_discrepancy", "cannot_tell"):
-        assert propose(_found(SimpleNamespace(conditions=(_unheld(),)), verdict, catalogue())) is None
-    assert propose(_found(SimpleNamespace(conditions=(_unheld(),)), "named")) is None  # all were looked for
+        assert propose(_found(SimpleNamespace(conditions=(_unheld(),), by_force=False), verdict, catalogue())) is None
+    assert (
+        propose(_found(SimpleNamespace(conditions=(_unheld(),), by_force=False), "named")) is None
+    )  # all were looked for
     monkeypatch.setattr(proposing, "_simulated", lambda *_: None)  # too much force
-    assert propose(_found(SimpleNamespace(conditions=(_unheld(),)), "named", catalogue())) is None
+    assert propose(_found(SimpleNamespace(conditions=(_unheld(),), by_force=False), "named", catalogue())) is None
 
 
 def test_a_tool_that_would_press_too_hard_is_pressed_less_deep(monkeypatch) -> None:
