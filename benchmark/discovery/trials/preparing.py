@@ -26,7 +26,16 @@ from benchmark.discovery.trials.rows import (
     record,
     resting_grid,
 )
-from benchmark.discovery.trials.segments import FITTED, prescribed, scatter_of, segments, stages, steadied
+from benchmark.discovery.trials.segments import (
+    FITTED,
+    at_steady,
+    forced,
+    prescribed,
+    scatter_of,
+    segments,
+    stages,
+    steadied,
+)
 from benchmark.discovery.trials.study import ConditionData, Study
 from benchmark.errors import InputError
 from benchmark.files import Camera, Session, Tissue, Trial, stretched_tissue
@@ -102,6 +111,7 @@ def _scatter(raw: Sequence[RawTrial]) -> list[str]:
     return [
         f"the depth of {len(sizes)} of {len(raw)} trials scatters by {1e6 * np.median(sizes):.2g} um from row to row, "
         "which the force does not follow: strokes and rests were smoothed"
+        + (", and the force is as at that depth" if raw[0].by_force else "")
     ]
 
 
@@ -236,29 +246,30 @@ def _raw(session: Session, trial: Trial, warnings: list[str]) -> RawTrial:
     if table.depth.max() <= 0.0:
         raise InputError(f"{place}: depth_mm never rises above 0, so the tool never presses.")
     time, read, force = _decimated(table.time, table.depth, table.force)
-    depth = steadied(time, read, force)
+    by_force = session.drive == "force"
+    held = forced(time, force) if by_force else []
+    depth = steadied(time, read, force, held)
     interval = np.diff(time)
     if interval.max() > criteria.LONG_GAP * np.median(interval):
         warnings.append(f"trial {trial.name}: a gap of {interval.max():.3g} s between rows; nothing is filled in")
-    by_force = session.drive == "force"
     led = prescribed(force) if by_force else depth
-    pieces = tuple(segments(time, led))
+    pieces = tuple(held if by_force else segments(time, depth))
     if not any(piece.kind == "press" for piece in pieces):
         what = "force" if by_force else "depth"
         raise InputError(f"{place}: the {what} never rises by a tenth of its range; a press is needed.")
     seen = marker_frames(trial, session.camera) if session.camera is not None and _over_hole(trial) else None
     frames, markers = seen if seen is not None else (None, None)
-    rate, earlier = acceleration(time, depth), _before(trial)
-    steady = depth is not read
-    return RawTrial(trial, time, depth, force, rate, frames, markers, pieces, led, by_force, steady, earlier)
+    rate, earlier, steady = acceleration(time, depth), _before(trial, by_force), depth is not read
+    shown = at_steady(force, read, depth) if by_force and steady else force
+    return RawTrial(trial, time, depth, shown, rate, frames, markers, pieces, led, by_force, steady, earlier)
 
 
-def _before(trial: Trial) -> Array:
+def _before(trial: Trial, by_force: bool) -> Array:
     """(k, 2) times and depths of the record before a trial that is cut from it; none where a trial is all of it."""
     if trial.earlier is None:
         return no_rows()
     time, depth, force = _decimated(trial.earlier.time, trial.earlier.depth, trial.earlier.force)
-    return earlier_rows(time, steadied(time, depth, force))
+    return earlier_rows(time, steadied(time, depth, force, forced(time, force) if by_force else ()))
 
 
 def _decimated(*columns: Array) -> list[Array]:

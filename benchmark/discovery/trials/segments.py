@@ -17,6 +17,11 @@ from benchmark.discovery.discovery_result import PHASES, Array
 
 FITTED = 5
 """Rows of a local quadratic, which third differences need as well."""
+FLAT, LEAST_FLAT = 8.0, 0.005
+"""Standard deviations of a prescribed force's scatter, and share of its range at least, within which it stands: six are
+the way from its lowest row of a rest to its highest."""
+SURELY_OUT = 3.0
+"""Standard deviations of its scatter below zero from which a depth touches nothing."""
 OF_NORMAL = 1.4826
 """A normal standard deviation over the median of the sizes."""
 
@@ -52,8 +57,8 @@ def reversals(depth: Array, threshold: float) -> list[int]:
     return found
 
 
-def segments(time: Array, depth: Array) -> list[Segment]:
-    """Segments of a motion: time (n,) s, depth (n,) m; empty where nothing moves.
+def segments(time: Array, depth: Array, width: float = criteria.LEVEL_WIDTH) -> list[Segment]:
+    """Segments of a motion: time (n,) s, depth (n,) m; empty where nothing moves. What stands is within `width`.
 
     Widths are shares of the travel, of which a long way through air does not count: beside 20 mm of it, a press of 3 mm
     that was held for 10 s seemed to have no hold.
@@ -66,8 +71,8 @@ def segments(time: Array, depth: Array) -> list[Segment]:
     pieces: list[tuple[int, int, str]] = []
     for first, last in pairwise(edges):
         if last > first:
-            for piece in _with_rests(time, depth, first, last, criteria.LEVEL_WIDTH * travel):
-                pieces += _with_dwells(time, depth, piece, criteria.LEVEL_WIDTH * travel)
+            for piece in _with_rests(time, depth, first, last, width * travel):
+                pieces += _with_dwells(time, depth, piece, width * travel)
     return _numbered(_joined(pieces))
 
 
@@ -192,10 +197,28 @@ def prescribed(force: Array) -> Array:
     """
     from scipy.ndimage import uniform_filter1d
 
-    width = criteria.LEVEL_WIDTH * max(float(np.ptp(force)), 1e-300)
-    rows = int(np.clip((criteria.SMOOTHED * scatter_of(force) / width) ** 2, 1, max(force.size // 20, 1)))
-    course = uniform_filter1d(force, rows, mode="nearest")
+    course = uniform_filter1d(force, _averaged(force), mode="nearest")
     return np.asarray(course - course.min())
+
+
+def _averaged(force: Array) -> int:
+    width = criteria.LEVEL_WIDTH * max(float(np.ptp(force)), 1e-300)
+    return int(np.clip(np.ceil((FLAT * scatter_of(force) / width) ** 2), 1, max(force.size // 20, 1)))
+
+
+def forced(time: Array, force: Array) -> list[Segment]:
+    """Segments of a trial whose force (n,), N, was prescribed: its turns are corners of the depth.
+
+    The rest before the first step of a staircase is short beside the way of all steps, and told by that step alone.
+    """
+    course, scatter = prescribed(force), scatter_of(force) / _averaged(force) ** 0.5
+    width = float(np.clip(FLAT * scatter / max(float(np.ptp(course)), 1e-300), LEAST_FLAT, criteria.LEVEL_WIDTH))
+    pieces: list[tuple[int, int, str]] = []
+    for each in segments(time, course, width):
+        first, last = each.first, min(each.last, time.size - 1)
+        stroke = each.kind != "rest" and last > first
+        pieces += _with_rests(time, course, first, last, width * course.max()) if stroke else [(first, last, "rest")]
+    return _numbered(_joined(pieces))
 
 
 def scatter_of(signal: Array) -> float:
@@ -205,30 +228,52 @@ def scatter_of(signal: Array) -> float:
     return float(OF_NORMAL * np.median(np.abs(np.diff(signal, 3))) / np.sqrt(20.0))
 
 
-def steadied(time: Array, depth: Array, force: Array) -> Array:
+def steadied(time: Array, depth: Array, force: Array, forced: Sequence[Segment] = ()) -> Array:
     """A depth (n,), m, without the scatter of its sensor, each stroke and rest by itself; the same one without any.
 
     A scatter that the force (n,), N, follows is motion and stays. One that it does not follow favours whatever lags in
     a model, since between two rows that meets their mean (errors in variables), and hides where a stroke ends. Strokes
-    become lines or cubic splines of a few pieces.
+    become lines or cubic splines of a few pieces. Where the force was prescribed its segments, `forced`, tell where
+    they meet; a row there takes the side that is nearer to it.
     """
-    if not _scatters(depth, force):
+    turns = [piece.first for piece in forced[1:]]
+    if not _scatters(depth, force, turns):
         return depth
-    out = depth.copy()
-    for first, last in pairwise(_borders_through(time, depth)):
+    out, met = depth.copy(), np.full(depth.size, np.inf)
+    borders = [0, *turns, depth.size - 1] if forced else _borders_through(time, depth)
+    for first, last in pairwise(borders):
         whole = slice(first, last + 1)
         if last - first >= 2 * FITTED:
-            out[whole] = _smooth(time[whole], depth[whole], scatter_of(depth))
+            smooth = _smooth(time[whole], depth[whole], scatter_of(depth))
+            off = np.abs(smooth - depth[whole])
+            out[whole] = np.where(off < met[whole], smooth, out[whole]) if forced else smooth
+            met[whole] = off
     return out
 
 
-def _scatters(depth: Array, force: Array) -> bool:
-    """Whether a depth scatters by what counts beside the force's own scatter, and the force does not follow it."""
+def at_steady(force: Array, read: Array, steady: Array) -> Array:
+    """A force (n,), N, as at the depth made steady: less what the scatter that was taken out is worth.
+
+    Under a prescribed force the depth's scatter is the noise of the trial. A smoothed one hides it: the rows of a hold
+    then share one error where its own were as good as independent, and strokes of a few rows scatter as before.
+    """
+    stiffness = float(np.ptp(force)) / max(float(read.max()), 1e-300)
+    touching = steady > -SURELY_OUT * scatter_of(read)
+    return np.asarray(force - np.where(touching, stiffness * (read - steady), 0.0))
+
+
+def _scatters(depth: Array, force: Array, turns: Sequence[int]) -> bool:
+    """Whether a depth scatters by what counts beside the force's own scatter, and the force does not follow it.
+
+    Differences over the `turns` of a prescribed force are no scatter.
+    """
     scatter, reach = scatter_of(depth), max(float(depth.max()), 1e-300)
     stiffness = float(np.ptp(force)) / reach
     if stiffness * scatter <= criteria.SCATTERS * scatter_of(force):
         return False
     inside = depth[:-3] > criteria.IN_CONTACT * reach
+    for turn in turns:
+        inside[max(turn - 3, 0) : turn + 1] = False
     jumps, answers = np.diff(depth, 3)[inside], np.diff(force, 3)[inside]
     return float(answers @ jumps) < criteria.ANSWERED * stiffness * float(jumps @ jumps)
 

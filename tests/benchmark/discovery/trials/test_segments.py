@@ -5,7 +5,16 @@ import pytest
 
 from benchmark.discovery.discovery_result import PHASES
 from benchmark.discovery.trials.rows import bin_means, bin_sizes, fractions
-from benchmark.discovery.trials.segments import reversals, scatter_of, segments, stages, steadied, without_dwells
+from benchmark.discovery.trials.segments import (
+    at_steady,
+    forced,
+    reversals,
+    scatter_of,
+    segments,
+    stages,
+    steadied,
+    without_dwells,
+)
 
 
 def test_reversals_are_found_through_noise():
@@ -194,3 +203,49 @@ def test_a_stroke_of_a_few_rows_stays_as_it_is():
     force[5] = 1.0
     assert steadied(time, read, force)[:5].tolist() == read[:5].tolist()
     assert scatter_of(np.array([0.0, 1e-3, 0.0])) == 0.0
+
+
+def weighed(seed, *, scatter=5e-6, steps=3):
+    """Weights put on one by one for 4 s, and taken off, on a gel that creeps: time, true depth, reading, force."""
+    rng = np.random.default_rng([seed, 11])
+    time = np.arange(0.0, 4.0 * steps + 5.0, 0.08)
+    put = 1.0 + 4.0 * np.arange(steps)
+    force = np.clip((time[:, None] - put) / 0.2, 0.0, 1.0).sum(axis=1) / steps
+    force = 0.09 * np.where(time > put[-1] + 4.0, 0.05, force)
+    slow = np.zeros(time.size)
+    for row in range(1, time.size):
+        slow[row] = slow[row - 1] + 0.04 * (force[row] - slow[row - 1])
+    depth = (force + 0.5 * slow) / 230.0
+    read, shown = depth + scatter * rng.normal(size=time.size), force + 3e-4 * rng.normal(size=time.size)
+    return time, depth, read, shown
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_segments_under_a_prescribed_force_are_those_of_the_force(seed):
+    """By the depth the creep after a step is a stroke, and so is the noise of a short rest before the first step."""
+    time, _, _, force = weighed(seed)
+    pieces = forced(time, force)
+    assert kinds(pieces) == ["rest", *("press", "rest") * 3, "retract", "rest"]
+    assert time[pieces[1].first] == pytest.approx(1.0, abs=0.1)
+    assert [time[pieces[k].first] for k in (2, 4, 6)] == pytest.approx([1.2, 5.2, 9.2], abs=0.1)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_scattering_depth_is_made_steady_between_the_turns_of_a_prescribed_force(seed):
+    time, depth, read, force = weighed(seed)
+    steady = steadied(time, read, force, forced(time, force))
+    held = np.concatenate([np.arange(each.first, min(each.last, time.size)) for each in forced(time, force)[::2]])
+    assert np.std((steady - depth)[held]) < 2.5e-6
+    assert np.abs(steady - depth).max() < 1.8e-5  # a stroke of three rows keeps what it scatters by
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_prescribed_force_at_the_steady_depth_has_the_depths_scatter_as_white_noise(seed):
+    """Without it the rows of a hold share one error, beside a force that scatters by a quarter as much."""
+    time, depth, read, force = weighed(seed)
+    steady = steadied(time, read, force, forced(time, force))
+    stiffness = np.ptp(force) / read.max()
+    noise = at_steady(force, read, steady) - force + stiffness * (steady - depth)
+    inside = noise[np.abs(time - 7.0) < 1.8]
+    assert np.std(inside) == pytest.approx(5e-6 * stiffness, rel=0.35)
+    assert abs(np.corrcoef(inside[1:], inside[:-1])[0, 1]) < 0.45
