@@ -122,7 +122,7 @@ class TrialEntry(FileModel):
 
 
 class Drive(FileModel):
-    """Which channel the rig prescribed: depth | force."""
+    """Which channel the rig prescribed: depth | force; left out: force where trials surely show that, else depth."""
 
     channel: Literal["depth", "force"] = "depth"
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from bench_hw.tables import MarkerTable, TrialTable, calm
 from benchmark.errors import InputError
-from benchmark.files.sessions.description import Camera
+from benchmark.files.sessions.description import Camera, Drive, SessionFile
 
 STANDS: Final = 0.1
 """Share of the travel over which a force that does not change by one digit is no tissue's."""
@@ -42,6 +42,78 @@ def doubtful_forces(names: Sequence[str], tables: Sequence[TrialTable]) -> list[
                 f"{1e3 * way:.3g} mm: at the end of the sensor's range? What is fitted is then too soft"
             )
     return said
+
+
+HELD_AT, HELD_WITHIN = 0.2, 0.01
+"""Share of a force's range, from its least, above which a hold of it is one, and within which it then stands."""
+CREEPS, ABOVE_FORCE, SLOWER = 0.02, 10.0, 1.5
+"""Share of its travel by which a depth creeps under a force that stands, between the means of a hold's first and last
+quarter, times the share by which that force moves meanwhile, and times its pace at the end that at the beginning is: a
+plateau of foam and a sensor at its end are passed at one speed."""
+SURE_CREEP, LEAST_HELD = 5.0, 24
+"""Standard errors by which it creeps to the end, where a depth that was driven there stands; rows of such a hold."""
+CREEPING, MOST_HOLDS = 3, 0.75
+"""Trials, and share of those in which the force is held, that must show it for its force to be the prescribed one."""
+
+
+def force_driven(tables: Sequence[TrialTable]) -> bool | None:
+    """Whether the rig prescribed the force: held, it stands while the depth creeps on, ever slower; None if in some.
+
+    Nothing tells where the tissue does not creep: then both stand in a hold, whichever was prescribed.
+    """
+    held = [creeps for table in tables if (creeps := _creeps_under_force(table)) is not None]
+    if not any(held):
+        return False
+    return True if sum(held) >= max(CREEPING, MOST_HOLDS * len(held)) else None
+
+
+def with_drive(file: SessionFile, tables: Sequence[TrialTable]) -> tuple[SessionFile, list[str]]:
+    """The session, driven by force where its trials surely show that and nobody says so; and a warning."""
+    found = False if "channel" in file.drive.model_fields_set else force_driven(tables)
+    if found is False:
+        return file, []
+    if found is None:
+        return file, [
+            "in some trials the force stands while the depth creeps on, as under a prescribed force (dead weights, a "
+            'force loop): say [drive] channel = "force", or "depth", as which all are taken'
+        ]
+    return file.model_copy(update={"drive": Drive(channel="force")}), [
+        "the force stands while the depth creeps on: taken for prescribed, the depth for its answer (dead weights, a "
+        'force loop); say [drive] channel = "force", or "depth" if that was prescribed'
+    ]
+
+
+def _creeps_under_force(table: TrialTable) -> bool | None:
+    """Whether in the longest hold of the force the depth goes on, surely and slower to the end; None without a hold."""
+    first, last = force_hold(table.force)
+    if last - first < LEAST_HELD:
+        return None
+    depth, force = (_quarters(values[first:last]) for values in (table.depth, table.force))
+    moved = abs(float(force[-1] - force[0])) / float(np.ptp(table.force))
+    steps, scatter = np.diff(depth), float(np.std(np.diff(table.depth[first:last], 2))) / 6.0**0.5
+    surely = bool((steps > SURE_CREEP * scatter * (8.0 / (last - first)) ** 0.5).all())
+    share = float(depth[-1] - depth[0]) / max(float(np.ptp(table.depth)), 1e-300)
+    return surely and share >= max(CREEPS, ABOVE_FORCE * moved) and bool(steps[0] >= SLOWER * steps[-1])
+
+
+def force_hold(force: NDArray[np.float64]) -> tuple[int, int]:
+    """First row, and that behind the last, of the longest run in which a pressing force (n,) stands; 0, 0 without."""
+    span = max(float(np.ptp(force)), 1e-300)
+    mean = np.convolve(np.pad(force, 2, mode="edge"), np.ones(5) / 5.0, "valid")
+    share = (mean - force.min()) / span
+    counts = np.bincount(np.round(share[share > HELD_AT] / HELD_WITHIN).astype(int), minlength=1)
+    if not counts.any():
+        return 0, 0
+    near = np.abs(share - HELD_WITHIN * int(np.argmax(counts))) <= 1.5 * HELD_WITHIN
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], near, [False]]).astype(int)))
+    first, last = max(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True), key=lambda run: run[1] - run[0])
+    quarters = _quarters(force[first:last]) if last - first >= 4 else np.array([0.0, span])
+    return (first, last) if abs(float(quarters[-1] - quarters[0])) <= 0.5 * HELD_WITHIN * span else (0, 0)
+
+
+def _quarters(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(4,) means of the quarters of values (n,)."""
+    return np.array([part.mean() for part in np.array_split(values, 4)])
 
 
 EITHER_WAY: Final = (

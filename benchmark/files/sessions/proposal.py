@@ -21,7 +21,7 @@ from benchmark.files.loading import Overrides
 from benchmark.files.overrides import put_in
 from benchmark.files.schema import validated
 from benchmark.files.sessions.description import SessionFile
-from benchmark.files.sessions.doubts import doubtful_forces, doubtful_kinds, doubtful_times
+from benchmark.files.sessions.doubts import doubtful_forces, doubtful_kinds, doubtful_times, force_hold, with_drive
 from benchmark.files.sessions.recordings import BOTH_TURNED, Recording, read_recordings, with_headers
 from benchmark.files.sessions.session_folder import (
     SESSION_FILE,
@@ -37,8 +37,8 @@ from benchmark.files.sources import KeyPath, Source, is_file
 ALIKE = 0.1
 """Of their mean, within which speeds, depths and holds are of one protocol; labs set them to round numbers."""
 JUMP_ROWS = 5
-"""Rows that a prescribed force takes to rise at least, as far as its rate is compared, and over which it is averaged
-where its holds are looked for: a weight put on by hand begins and ends anywhere between two of them. First choice."""
+"""Rows that a prescribed force takes to rise at least, as far as its rate is compared: a weight put on by hand begins
+and ends anywhere between two of them. First choice."""
 OFF_GRID = 0.2
 """Of the spacing, within which markers at rest stand where a grid has them: printed by hand, and seen at a slant."""
 NOTHING: Overrides = {}
@@ -83,8 +83,8 @@ def motion_of(table: TrialTable, *, by_force: bool = False) -> Motion:
     """How a trial moved, or what force it was given; its speed is that of the middle of the first way in."""
     if by_force:
         table = replace(table, depth=table.force - table.force.min())
-        mean = np.convolve(np.pad(table.depth, JUMP_ROWS // 2, mode="edge"), np.ones(JUMP_ROWS) / JUMP_ROWS, "valid")
-        presses, hold = phases(replace(table, depth=mean))
+        first, last = force_hold(table.force)
+        presses, hold = phases(table)[0], float(table.time[last - 1] - table.time[first]) if last else 0.0
     else:
         presses, hold = phases(table)
     deepest = float(table.depth.max())
@@ -131,9 +131,10 @@ def propose(folder: Path, told: Overrides = NOTHING) -> Proposal:
     paths = [inside(source.folder, entry.file, entry.file) for entry in file.trials]
     read = read_recordings(file, paths, listed=False)
     resolved, _ = with_headers(file, read.trials)
+    resolved, driven = with_drive(resolved, [trial.table for trial in read.trials])
     tools_told = {name: keys.tool for name, keys in resolved.conditions.items()} or {"": resolved.tool}
     specimen, why = assumed_specimen([trial.table for trial in read.trials], *told_heights(file, read.trials))
-    named = _conditions(read.trials, kept=len({entry.condition for entry in file.trials}) > 1)
+    named = _conditions(read.trials, resolved)
     tools = {tuple(sorted(tool.items())) for tool in tools_told.values() if tool}
     plates = bool(resolved.conditions) and all(keys.support for keys in resolved.conditions.values())
     camera, asked = _camera_lines(source, [entry.markers for entry in file.trials if entry.markers])
@@ -148,7 +149,7 @@ def propose(folder: Path, told: Overrides = NOTHING) -> Proposal:
         "[tool]",
         *([] if plates else _tool_lines(tools)),
         'contact = "rigid_bonded"  # SAY: rigid_bonded where the surface sticks, rigid_frictionless where it slides',
-        *_support_lines(resolved),
+        *_rig_lines(resolved),
         *camera,
         *(_of_conditions("tool", tools_told) if len(tools) > 1 else []),
     ]
@@ -159,15 +160,16 @@ def propose(folder: Path, told: Overrides = NOTHING) -> Proposal:
         _refuse_existing(folder / SPECIMEN_FILE)
     texts = {SPECIMEN_FILE: body, SESSION_FILE: "\n".join([*head, *trials]) + "\n"}
     turned = (each for each in read.warnings if BOTH_TURNED in each)
-    doubts = (*turned, *_doubts(read.trials, named), *said)
+    doubts = (*driven, *turned, *_doubts(read.trials, named, resolved), *said)
     return Proposal(texts, to_say, (*doubts, *read.aside, *unclosed_recordings(source), *unused_films(source, paths)))
 
 
-def _doubts(trials: Sequence[Recording], conditions: Sequence[str]) -> list[str]:
+def _doubts(trials: Sequence[Recording], conditions: Sequence[str], file: SessionFile) -> list[str]:
     """What is odd about the numbers of files, as a command says that uses them, and about the trials of a condition."""
     names, tables = [each.entry.file for each in trials], [each.table for each in trials]
     kinds = doubtful_kinds(names, tables, conditions)
-    return [*doubtful_forces(names, tables), *doubtful_times(names, tables), *kinds]
+    forces = [] if file.drive.channel == "force" else doubtful_forces(names, tables)
+    return [*forces, *doubtful_times(names, tables), *kinds]
 
 
 def _importing(told: Overrides) -> dict[str, str]:
@@ -216,14 +218,14 @@ def _refuse_existing(path: Path) -> None:
         raise InputError(f"{path} is there already and is left as it is; take it away for a new proposal.")
 
 
-def _conditions(trials: Sequence[Recording], *, kept: bool) -> list[str]:
+def _conditions(trials: Sequence[Recording], file: SessionFile) -> list[str]:
     """The condition of each trial: its sub-folder's where there are several, else by how it moved."""
-    if kept:
+    if len({entry.condition for entry in file.trials}) > 1:
         return [trial.entry.condition for trial in trials]
     groups: list[Motion] = []
     names = []
     for trial in trials:
-        motion = motion_of(trial.table)
+        motion = motion_of(trial.table, by_force=file.drive.channel == "force")
         same = next((each for each in groups if each.alike(motion)), None)
         if same is None:
             groups.append(motion)
@@ -245,6 +247,13 @@ def _of_conditions(part: str, told: Mapping[str, Mapping[str, Any]]) -> list[str
 
 def _from_headers(told: Mapping[str, Any]) -> list[str]:
     return [f"{key} = {_text(str(value))}  # from the files' headers" for key, value in told.items()]
+
+
+def _rig_lines(file: SessionFile) -> list[str]:
+    """What holds the specimens, and what drives the tool where that is the force."""
+    by_force = file.drive.channel == "force"
+    driven = ["", "[drive]", 'channel = "force"  # SAY: depth where that was prescribed'] if by_force else []
+    return [*_support_lines(file), *driven]
 
 
 def _support_lines(file: SessionFile) -> list[str]:

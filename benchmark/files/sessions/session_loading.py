@@ -26,7 +26,7 @@ from benchmark.files.schema import FileModel, known_keys, validated
 from benchmark.files.sessions.column_labels import check_labels
 from benchmark.files.sessions.depth_counts import even_depths
 from benchmark.files.sessions.description import Camera, SessionFile, assumed_edges, assumptions, base_setup, setups
-from benchmark.files.sessions.doubts import check_markers, doubtful_forces, doubtful_markers, doubtful_times
+from benchmark.files.sessions.doubts import check_markers, doubtful_forces, doubtful_markers, doubtful_times, with_drive
 from benchmark.files.sessions.film_clock import doubtful_clocks, on_trials_clock
 from benchmark.files.sessions.recordings import (
     Recording,
@@ -91,6 +91,7 @@ def load_session(path: str | Path, overrides: Overrides = _NO_OVERRIDES, specime
     _check_films(file, source, film_paths)
     read = read_recordings(file, paths_of, listed=bool(source.text) or is_file(Path(source.name)))
     file, told = with_headers(file, read.trials)
+    file, driven = with_drive(file, [each.table for each in read.trials])
     check_tool_is_told(file, read.trials)
     trials, warnings = _trials(file, source, read.trials, paths_of, marker_paths)
     chosen = overrides.get("specimen", specimen)
@@ -99,7 +100,6 @@ def load_session(path: str | Path, overrides: Overrides = _NO_OVERRIDES, specime
     heights, other = heights_under(file, read.trials, tissue, of_tissue, assumed=assumed is not None)
     trials = _completed(trials, read.trials, dict(zip(map(id, file.trials), film_paths, strict=True)), heights)
     base = base_setup(file, source)
-    files = [*_files(trials), *_other_files(file, source, tissue_file)]
     listed = [*paths_of, *(path for path in (*marker_paths, *film_paths) if path is not None)]
     beside = [*other, *said_of_folder(source, listed, tissue_file, inner)]
     session = Session(
@@ -113,10 +113,10 @@ def load_session(path: str | Path, overrides: Overrides = _NO_OVERRIDES, specime
         camera=file.camera,
         synthetic=file.synthetic or any(is_synthetic(trial.path) for trial in trials),
         trials=tuple(trials),
-        warnings=(*told, *read.warnings, *warnings, *([assumed] if assumed else []), *beside),
+        warnings=(*told, *driven, *read.warnings, *warnings, *([assumed] if assumed else []), *beside),
         shown=read.shown,
         settings=settings,
-        fingerprint=fingerprint(source.folder, files),
+        fingerprint=fingerprint(source.folder, [*_files(trials), *_other_files(file, source, tissue_file)]),
         fit=file.fit,
         assumed_edges=assumed_edges(file, setups(file, dict.fromkeys(each.condition for each in trials), source)),
     )

@@ -14,6 +14,7 @@ from benchmark.files.sessions.doubts import (
     doubtful_kinds,
     doubtful_markers,
     doubtful_times,
+    force_driven,
     pressed_negative,
 )
 from tests.benchmark.files.sessions.replicates import replicate
@@ -179,3 +180,52 @@ def test_markers_of_another_origin_or_a_mirrored_grid_are_told() -> None:
     corner, mirrored = doubtful_markers(["as told", "corner", "up", "off centre", "turned"], tables, CAMERA)
     assert corner.startswith("corner: the middle of the markers is at (34, 26) mm, so that the origin of x_mm and y_mm")
     assert mirrored.startswith("up: the markers' grid is mirrored")
+
+
+def held(seed, *, by_force=True, tau=2.0, share=0.4, limit=np.inf, plateau=False):
+    """A gel held for 10 s under a force, or at a depth under which its force decays; its depth scatters by 3 um."""
+    rng, time = np.random.default_rng([seed, 3]), np.arange(0.0, 16.0, 0.05)
+    ramp = np.clip((time - 1.0) / 0.5, 0.0, 1.0) - np.clip((time - 11.5) / 0.5, 0.0, 1.0)
+    slow = np.zeros(time.size)
+    for row in range(1, time.size):
+        slow[row] = slow[row - 1] + 0.05 / tau * (ramp[row] - slow[row - 1])
+    depth, force = (ramp + share * slow, ramp) if by_force else (ramp, ramp - share * slow)
+    if plateau:  # a foam that gives way at one force, pressed at one speed
+        depth = np.clip((time - 1.0) / 10.0, 0.0, 1.0) - np.clip((time - 11.5) / 0.5, 0.0, 1.0)
+        force = np.minimum(8.0 * depth, 0.8)
+    read = 4e-4 * depth + 3e-6 * rng.normal(size=time.size)
+    return TrialTable(time, read, 0.09 * np.minimum(force, limit) + 3e-4 * rng.normal(size=time.size), {}, "a.csv", {})
+
+
+@pytest.mark.parametrize(
+    ("options", "driven"),
+    [
+        ({}, True),
+        ({"tau": 5.0}, True),
+        ({"by_force": False}, False),
+        ({"by_force": False, "share": 0.0}, False),  # elastic: both stand, whichever was prescribed
+        ({"share": 0.0}, False),
+        ({"by_force": False, "share": 0.2, "limit": 0.6}, False),  # a sensor at its end
+        ({"by_force": False, "plateau": True}, False),
+    ],
+)
+def test_a_prescribed_force_is_told_by_a_depth_that_creeps_on_while_it_stands(options, driven):
+    assert force_driven([held(seed, **options) for seed in range(4)]) is driven
+
+
+def test_a_force_that_stands_over_creep_in_some_trials_is_asked_for():
+    some = [held(0), held(1), held(2, by_force=False, share=0.0), held(3, by_force=False, share=0.0)]
+    assert force_driven(some) is None
+    assert force_driven([held(0), held(1)]) is None
+
+
+@pytest.mark.parametrize(("told", "drive"), [(None, "force"), ("depth", "depth"), ("force", "force")])
+def test_a_session_is_driven_by_force_where_its_trials_show_it_and_nobody_says_else(tmp_path, told, drive):
+    for seed in range(3):
+        write_trial_csv(tmp_path / f"{seed}.csv", held(seed))
+    trials = "".join(f'[[trials]]\nfile = "{seed}.csv"\ncondition = "held"\n' for seed in range(3))
+    channel = "" if told is None else f'[drive]\nchannel = "{told}"\n'
+    (tmp_path / "session.toml").write_text(f'schema = 1\nname = "weights"\n{channel}{trials}')
+    session = load_session(tmp_path)
+    assert session.drive == drive
+    assert any('say [drive] channel = "force"' in text for text in session.warnings) is (told is None)

@@ -252,3 +252,29 @@ def test_a_scale_reads_a_force(tmp_path):
     np.savetxt(tmp_path / "t.csv", table, delimiter=",", header="Time (s),Depth (mm),Weight (grams)", comments="")
     write_proposal(tmp_path, propose(tmp_path))
     assert load_session(tmp_path).trials[0].table.force.max() == pytest.approx(80.0 * 9.80665e-3)
+
+
+def creeping(seed, speed):
+    """Time, depth (mm) and force of a gel that creeps under 1 N, put on at a speed (N/s) and held until 10 s."""
+    rng, time = np.random.default_rng([seed, 5]), np.arange(0.0, 12.0, 0.05)
+    force = np.clip(speed * (time - 1.0), 0.0, 1.0) * (time < 10.0)
+    slow = np.zeros(time.size)
+    for row in range(1, time.size):
+        slow[row] = slow[row - 1] + 0.03 * (force[row] - slow[row - 1])
+    depth = (0.5 + 0.1 * rng.random()) * (force + 0.5 * slow) + 3e-3 * rng.normal(size=time.size)
+    return np.column_stack([time, depth, force + 2e-3 * rng.normal(size=time.size)])
+
+
+def test_a_force_that_was_prescribed_is_proposed_as_the_drive_and_tells_the_conditions(tmp_path):
+    """By the depth, which is the answer and scatters, each trial had a condition of its own."""
+    for number, speed in enumerate([100.0] * 3 + [1.0] * 3):
+        name, columns = tmp_path / f"{number}.csv", "time_s,depth_mm,force_N"
+        np.savetxt(name, creeping(number, speed), delimiter=",", header=columns, comments="", fmt="%.6f")
+    proposal = propose(tmp_path)
+    assert '[drive]\nchannel = "force"' in proposal.texts["session.toml"]
+    assert any("the force stands while the depth creeps on" in text for text in proposal.warnings)
+    write_proposal(tmp_path, proposal)
+    session = load_session(tmp_path)
+    assert session.drive == "force"
+    assert [sum(trial.condition == name for trial in session.trials) for name in session.conditions] == [3, 3]
+    assert all("N_s_to_1N_held_" in name for name in session.conditions)
