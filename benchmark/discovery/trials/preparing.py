@@ -50,6 +50,7 @@ LEAST_IN_PRESS = 50
 0.3 s before it, at 1 kHz, was left with four, over whose bend the mean force is not that of the mean depth."""
 MOVES, RESTS = 0.7, 0.02
 """Of the largest speed in air on that way, above which a tool moves there, and below which it rests."""
+DRIVEN_BY = '; if the force was prescribed (dead weights, a force loop), say [drive] channel = "force"'
 MOST_IN_ALL, LEAST_IN_TRIAL = 2400, 40
 """Rows of all trials together, and of a trial where there are very many."""
 
@@ -111,7 +112,7 @@ def _scatter(raw: Sequence[RawTrial]) -> list[str]:
     return [
         f"the depth of {len(sizes)} of {len(raw)} trials scatters by {1e6 * np.median(sizes):.2g} um from row to row, "
         "which the force does not follow: strokes and rests were smoothed"
-        + (", and the force is as at that depth" if raw[0].by_force else "")
+        + (", and the force is as at that depth" if raw[0].by_force else DRIVEN_BY)
     ]
 
 

@@ -200,3 +200,14 @@ def test_forces_of_protocols_that_no_other_trial_has_are_told_in_newtons(session
     made = [weighed(number, steps=(4.0**number,)) for number in range(5)]
     with pytest.raises(InputError, match=r"different protocols .*; force up to .* N, at .* N/s"):
         prepare(session(made, drive="force"), 100)
+
+
+@pytest.mark.parametrize(("drive", "said"), [("depth", 'say [drive] channel = "force"'), ("force", "as at that depth")])
+def test_a_depth_that_scatters_asks_what_was_prescribed(session, drive, said) -> None:
+    """Tissue that does not creep shows nothing else that tells: force and depth stand together."""
+    rng, (time, depth, force, _) = np.random.default_rng(2), press(3.0, speed=0.3)
+    made = [
+        (time, depth + 0.02 * rng.normal(size=time.size), force + 1e-3 * rng.normal(size=time.size), None)
+        for _ in range(4)
+    ]
+    assert any(said in text for text in prepare(session(made, drive=drive), 100).warnings)
