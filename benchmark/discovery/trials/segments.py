@@ -17,11 +17,6 @@ from benchmark.discovery.discovery_result import PHASES, Array
 
 FITTED = 5
 """Rows of a local quadratic, which third differences need as well."""
-FLAT, LEAST_FLAT = 8.0, 0.005
-"""Standard deviations of a prescribed force's scatter, and share of its range at least, within which it stands: six are
-the way from its lowest row of a rest to its highest."""
-SURELY_OUT = 3.0
-"""Standard deviations of its scatter below zero from which a depth touches nothing."""
 OF_NORMAL = 1.4826
 """A normal standard deviation over the median of the sizes."""
 
@@ -203,7 +198,7 @@ def prescribed(force: Array) -> Array:
 
 def _averaged(force: Array) -> int:
     width = criteria.LEVEL_WIDTH * max(float(np.ptp(force)), 1e-300)
-    return int(np.clip(np.ceil((FLAT * scatter_of(force) / width) ** 2), 1, max(force.size // 20, 1)))
+    return int(np.clip(np.ceil((criteria.FLAT * scatter_of(force) / width) ** 2), 1, max(force.size // 20, 1)))
 
 
 def forced(time: Array, force: Array) -> list[Segment]:
@@ -212,7 +207,9 @@ def forced(time: Array, force: Array) -> list[Segment]:
     The rest before the first step of a staircase is short beside the way of all steps, and told by that step alone.
     """
     course, scatter = prescribed(force), scatter_of(force) / _averaged(force) ** 0.5
-    width = float(np.clip(FLAT * scatter / max(float(np.ptp(course)), 1e-300), LEAST_FLAT, criteria.LEVEL_WIDTH))
+    width = float(
+        np.clip(criteria.FLAT * scatter / max(float(np.ptp(course)), 1e-300), criteria.LEAST_FLAT, criteria.LEVEL_WIDTH)
+    )
     pieces: list[tuple[int, int, str]] = []
     for each in segments(time, course, width):
         first, last = each.first, min(each.last, time.size - 1)
@@ -258,7 +255,7 @@ def at_steady(force: Array, read: Array, steady: Array) -> Array:
     then share one error where its own were as good as independent, and strokes of a few rows scatter as before.
     """
     stiffness = float(np.ptp(force)) / max(float(read.max()), 1e-300)
-    touching = steady > -SURELY_OUT * scatter_of(read)
+    touching = steady > -criteria.SURELY_OUT * scatter_of(read)
     return np.asarray(force - np.where(touching, stiffness * (read - steady), 0.0))
 
 
