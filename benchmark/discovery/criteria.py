@@ -115,7 +115,8 @@ SMOOTHED = 6.0
 and rests are looked for. First choice."""
 FLAT, LEAST_FLAT, SURELY_OUT = 8.0, 0.005, 3.0
 """A prescribed force stands within so many deviations of its scatter, or this share of its range; a depth touches
-nothing from so many deviations below zero. The first was 4 and 5, under which rests of another's sessions broke at single rows.
+nothing from so many deviations below zero. The first was 4 and 5, under which rests of another's sessions broke at
+single rows.
 """
 COUNTED_AIR = 1.0
 """Of the peak depth, up to which the way through air counts to the travel. First choice: as much as the press itself,
