@@ -231,13 +231,18 @@ def steadied(time: Array, depth: Array, force: Array, forced: Sequence[Segment] 
     A scatter that the force (n,), N, follows is motion and stays. One that it does not follow favours whatever lags in
     a model, since between two rows that meets their mean (errors in variables), and hides where a stroke ends. Strokes
     become lines or cubic splines of a few pieces. Where the force was prescribed its segments, `forced`, tell where
-    they meet; a row there takes the side that is nearer to it.
+    they meet, and bends of the depth inside a stroke of the force, during which friction may hold the tool; a row there
+    takes the side that is nearer to it.
     """
     turns = [piece.first for piece in forced[1:]]
     if not _scatters(depth, force, turns):
         return depth
     out, met = depth.copy(), np.full(depth.size, np.inf)
-    borders = [0, *turns, depth.size - 1] if forced else _borders_through(time, depth)
+    borders = _borders_through(time, depth)
+    if forced:
+        strokes = [each for each in forced if each.kind != "rest"]
+        inside = [row for row in borders for each in strokes if each.first + 3 <= row <= each.last - 3]
+        borders = sorted({0, *turns, *inside, depth.size - 1})
     for first, last in pairwise(borders):
         whole = slice(first, last + 1)
         if last - first >= 2 * FITTED:

@@ -249,3 +249,17 @@ def test_a_prescribed_force_at_the_steady_depth_has_the_depths_scatter_as_white_
     inside = noise[np.abs(time - 7.0) < 1.8]
     assert np.std(inside) == pytest.approx(5e-6 * stiffness, rel=0.35)
     assert abs(np.corrcoef(inside[1:], inside[:-1])[0, 1]) < 0.45
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_tool_that_sticks_while_a_prescribed_force_falls_keeps_the_corner_of_its_depth(seed):
+    """A stroke of the force from turn to turn rounded it, and a friction of its own stood as a set."""
+    rng, time = np.random.default_rng([seed, 13]), np.arange(0.0, 24.0, 0.08)
+    force = 0.09 * np.interp(time, [1.0, 11.0, 21.0], [0.0, 1.0, 0.0])
+    reached = np.zeros(time.size)
+    for row in range(1, time.size):
+        reached[row] = np.clip(reached[row - 1], force[row] - 0.0045, force[row] + 0.0045)
+    depth = reached / 230.0
+    read, shown = depth + 1e-6 * rng.normal(size=time.size), force + 3e-4 * rng.normal(size=time.size)
+    steady = steadied(time, read, shown, forced(time, shown))
+    assert np.std((steady - depth)[(time > 10.0) & (time < 13.0)]) < 1.05e-6
