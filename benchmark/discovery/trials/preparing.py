@@ -80,7 +80,7 @@ def prepare(session: Session, rows: int) -> Study:
     kept = [each for part in parts for each in by_protocol(session.name, part, warnings)]
     camera, seen = session.camera if any(map(_over_hole, session.trials)) else None, _seen(kept)
     grid = None if camera is None else _grid(camera, kept, seen, warnings)
-    warnings += _held(session)
+    warnings += [*_held(session), *_told_relaxation(session.specimen)]
     order = {trial.name: number for number, trial in enumerate(session.trials)}
     conditions = tuple(
         _condition(session, group, grid, seen, np.array([order[r.trial.name] for r in group]), rows) for group in kept
@@ -102,6 +102,17 @@ def _held(session: Session) -> list[str]:
     if all(_over_hole(trial) or trial.markers is None for trial in session.trials):
         return []
     return ["the markers of trials without a hole are left out: the lower face, on which they are, is held there"]
+
+
+def _told_relaxation(specimen: Tissue) -> list[str]:
+    """That a relaxation the specimen is told to have is no part of the base."""
+    layers = [layer.name for layer in specimen.layers if layer.relaxation]
+    if not layers:
+        return []
+    return [
+        f"the relaxation that {', '.join(layers)} is told to have is left out of the base, which is elastic: what acts "
+        "of it is found anew, as viscoelastic relaxation, and may be compared with what was told"
+    ]
 
 
 def _scatter(raw: Sequence[RawTrial]) -> list[str]:

@@ -11,6 +11,7 @@ from benchmark.discovery.trials.preparing import prepare
 from benchmark.discovery.trials.rows import depth_step
 from benchmark.errors import InputError
 from benchmark.files import Camera, Support, load_session
+from benchmark.files.tissue import PronyTerm
 
 
 def rewrite(folder, change):
@@ -28,6 +29,15 @@ def test_one_or_two_trials_are_refused(session_of, trials):
 def test_few_trials_are_said_to_show_nothing(session_of):
     study = prepare(session_of(trials=4, speeds=(3e-3,)), 100)
     assert any("cannot reach the 5 % level" in text for text in study.warnings)
+
+
+def test_a_told_relaxation_is_said_to_be_no_part_of_the_base(session_of):
+    session = session_of(trials=4, speeds=(3e-3,))
+    assert not any("told to have" in text for text in prepare(session, 100).warnings)
+    first = session.specimen.layers[0].model_copy(update={"relaxation": (PronyTerm(g=0.3, tau=2.0),)})
+    fading = session.specimen.model_copy(update={"layers": (first, *session.specimen.layers[1:])})
+    said = prepare(replace(session, specimen=fading), 100).warnings
+    assert any(f"the relaxation that {first.name} is told to have is left out" in text for text in said)
 
 
 @pytest.mark.parametrize(
