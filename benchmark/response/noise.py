@@ -102,7 +102,9 @@ def restricted_noise(errors: Sequence[Array], counts: Sequence[Array], columns: 
     A fit takes the slow part of the noise along, so that what it leaves forgets sooner than the noise did: of a memory
     of 0.8 in 250 rows three columns leave 0.76, and the noise of a mean is taken a fifth too small. Restricted maximum
     likelihood undoes that (Patterson and Thompson 1971, Biometrika 58:545; of autoregressive noise Cheang and
-    Reinsel 2000, Journal of the American Statistical Association 95:1173), each trial with a scale of its own.
+    Reinsel 2000, Journal of the American Statistical Association 95:1173), each trial with a scale of its own. It
+    corrects maximum likelihood's memory, and is sought downhill from there: where the noise is the depth's, the columns
+    hold it too, and explain it all once a memory near one takes off what they have beside it.
 
     Parameters
     ----------
@@ -126,11 +128,20 @@ def restricted_noise(errors: Sequence[Array], counts: Sequence[Array], columns: 
     def criterion(memory: float) -> float:
         return sum(one.criterion(memory) for one in told)
 
-    best = min(range(len(MEMORIES)), key=lambda k: criterion(MEMORIES[k]))
+    best = _downhill([criterion(each) for each in MEMORIES], MEMORIES.index(fit_memory(errors, counts)))
     ends = MEMORIES[max(best - 1, 0)], MEMORIES[min(best + 1, len(MEMORIES) - 1)]
     between = minimize_scalar(criterion, bounds=ends, method="bounded", options={"xatol": RESOLVED}).x
     memory = min((MEMORIES[best], float(between)), key=criterion)
     return memory, np.array([np.nan if one is None else one.scale(memory) for one in kept])
+
+
+def _downhill(values: Sequence[float], start: int) -> int:
+    """The place of the minimum to which values lead from a start."""
+    while True:
+        lower = min(range(max(start - 1, 0), min(start + 2, len(values))), key=lambda k: values[k])
+        if values[lower] >= values[start]:
+            return start
+        start = lower
 
 
 @dataclass(frozen=True, eq=False)
