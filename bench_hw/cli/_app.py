@@ -16,7 +16,7 @@ from typing import Annotated
 import typer
 
 from bench_hw.cli._report import EXIT_MISSING, report_unexpected, say_error
-from bench_hw.starting import refuse_repeats, usage_words
+from bench_hw.starting import EXIT_INTERRUPTED, interrupted, refuse_repeats, usage_words
 
 PROGRAM = "python -m bench_hw"
 
@@ -75,4 +75,6 @@ def main() -> int:
             print(said, file=sys.stderr)
             return EXIT_MISSING
         return report_unexpected(error, debug="--debug" in sys.argv)
+    if code == EXIT_INTERRUPTED:  # the command-line library met it, and says nothing
+        return interrupted()
     return code if isinstance(code, int) else 0

@@ -2,6 +2,7 @@
 
 import json
 import re
+import signal
 import subprocess
 import sys
 
@@ -114,3 +115,19 @@ def test_what_is_no_number_is_null_in_json(capsys):
     printed = capsys.readouterr().out
     assert json.loads(printed) == {"a": [None, 1.5, [None, None, True]], "b": {"c": "µ"}}
     assert "µ" in printed
+
+
+def test_ctrl_c_in_a_verb_is_said(monkeypatch, capsys):
+    """The command-line library ends it with 130 and no word."""
+
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    before = signal.getsignal(signal.SIGINT)
+    monkeypatch.setattr("importlib.metadata.version", interrupted)
+    monkeypatch.setattr(sys, "argv", ["bench_hw", "--version"])
+    try:
+        assert _app.main() == 130
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert capsys.readouterr().err == "error: interrupted\n"
