@@ -96,7 +96,9 @@ def _scale(error: Array, count: Array, memory: float) -> float:
     return float(np.sqrt(np.mean(whitener(count, memory)(error)[some] ** 2))) if some.any() else np.nan
 
 
-def restricted_noise(errors: Sequence[Array], counts: Sequence[Array], columns: Sequence[Array]) -> tuple[float, Array]:
+def restricted_noise(
+    errors: Sequence[Array], counts: Sequence[Array], columns: Sequence[Array], memory: float | None = None
+) -> tuple[float, Array]:
     """Memory of the noise, and its standard deviation (R,) in each trial, where each was fitted by columns of its own.
 
     A fit takes the slow part of the noise along, so that what it leaves forgets sooner than the noise did: of a memory
@@ -114,6 +116,8 @@ def restricted_noise(errors: Sequence[Array], counts: Sequence[Array], columns: 
         Samples in each row.
     columns : sequence of (n, q) array
         Derivatives by what was fitted in each trial alone; the errors may hold any share of them.
+    memory : float or None
+        Where it is known.
 
     Returns
     -------
@@ -122,17 +126,21 @@ def restricted_noise(errors: Sequence[Array], counts: Sequence[Array], columns: 
     """
     kept = [_Left.of(*each) for each in zip(errors, counts, columns, strict=True)]
     told = [one for one in kept if one is not None]
-    if not told:
-        return 0.0, np.full(len(kept), np.nan)
+    if memory is None:
+        memory = _restricted_memory(told, fit_memory(errors, counts)) if told else 0.0
+    return memory, np.array([np.nan if one is None else one.scale(memory) for one in kept])
+
+
+def _restricted_memory(told: Sequence[_Left], first: float) -> float:
+    """The memory of the restricted likelihood of trials, downhill from a first one."""
 
     def criterion(memory: float) -> float:
         return sum(one.criterion(memory) for one in told)
 
-    best = _downhill([criterion(each) for each in MEMORIES], MEMORIES.index(fit_memory(errors, counts)))
+    best = _downhill([criterion(each) for each in MEMORIES], MEMORIES.index(first))
     ends = MEMORIES[max(best - 1, 0)], MEMORIES[min(best + 1, len(MEMORIES) - 1)]
     between = minimize_scalar(criterion, bounds=ends, method="bounded", options={"xatol": RESOLVED}).x
-    memory = min((MEMORIES[best], float(between)), key=criterion)
-    return memory, np.array([np.nan if one is None else one.scale(memory) for one in kept])
+    return min((MEMORIES[best], float(between)), key=criterion)
 
 
 def _downhill(values: Sequence[float], start: int) -> int:

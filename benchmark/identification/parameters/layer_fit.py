@@ -220,11 +220,17 @@ def _usual_film(film: MarkerRows) -> FilmNoise:
 def _fitted(
     problem: FitProblem, model: LayerModel, vector: Array, nuisance: Array
 ) -> tuple[LayerModel, TrialsFit[LayerModel], float]:
-    """The trials fitted on the surrogates at hand, with noise and scatter from what the fit leaves."""
-    fit = least_squares(model, vector, nuisance, search=SEARCH)
-    memory = 0.0
-    for _ in range(3):
-        model, memory = renoised(fit, problem.freedom)
+    """The trials fitted on the surrogates at hand, with noise and scatter from what the fit leaves.
+
+    The noise's memory is that of what ordinary least squares leave. Estimated again from a fit with memory it may hold
+    itself up: such a fit is off where the depth has noise, and what it is off by has the memory.
+    """
+    plain = replace(model, white=tuple(whitener(one.count, 0.0) for one in model.trials))
+    fit = least_squares(plain, vector, nuisance, search=SEARCH)
+    model, memory = renoised(fit, problem.freedom)
+    fit = least_squares(model, fit.vector, fit.nuisance, search=SEARCH)
+    for _ in range(2):
+        model, memory = renoised(fit, problem.freedom, memory)
         fit = least_squares(model, fit.vector, fit.nuisance, search=SEARCH)
     return model, fit, memory
 

@@ -224,7 +224,7 @@ def _shared(places: Sequence[Array], errors: Sequence[Array]) -> tuple[float, fl
     return max(alike, 0.0), apart
 
 
-def renoised(fit: TrialsFit[LayerModel], freedom: int) -> tuple[LayerModel, float]:
+def renoised(fit: TrialsFit[LayerModel], freedom: int, memory: float | None = None) -> tuple[LayerModel, float]:
     """The model with noise (AR(1)) and scatter of gains estimated from what a fit leaves, and the noise's memory.
 
     Parameters
@@ -232,12 +232,14 @@ def renoised(fit: TrialsFit[LayerModel], freedom: int) -> tuple[LayerModel, floa
     fit : TrialsFit of LayerModel
     freedom : int
         Trials beyond those that settle the level of each press; with none the scatter stays as it was.
+    memory : float or None
+        Of the force's noise, where it is known.
     """
     model = fit.model
     predicted = model.predicted(fit.vector, fit.nuisance)
     errors = [one.data.force - force for one, force in zip(model.trials, predicted, strict=True)]
     counts = [one.count for one in model.trials]
-    memory, deviations = restricted_noise(errors, counts, model.force_columns(fit.vector, fit.nuisance))
+    memory, deviations = restricted_noise(errors, counts, model.force_columns(fit.vector, fit.nuisance), memory)
     white = tuple(whitener(count, memory) for count in counts)
     noise = np.where(np.isnan(deviations), model.noise, np.maximum(deviations, 1e-9))
     scatter = model.gain_deviation if freedom < 1 else _scatter(fit, freedom)
