@@ -45,7 +45,7 @@ def test_of_a_ramp_from_the_touch_and_a_long_hold_the_ramp_is_not_taken_for_air(
 def test_weights_that_are_put_on_within_one_row_leave_the_touch_free(trial, noise):
     """The first loaded row was taken for the touch: four weights on 20 kPa were fitted with 790 kPa."""
     made = trial(noise=noise)
-    depth = np.repeat([0.0, *np.linspace(0.25, 1.0, 4)], 40) * made.depth.max()
+    depth = np.repeat([0.0, *np.linspace(0.7, 1.0, 4)], 40) * made.depth.max()
     force = made.curve(depth) + noise * made.force.max() * np.random.default_rng(5).normal(size=depth.size)
     allowed = contact_range(depth, force)
     assert allowed.low < 0.0 < allowed.high

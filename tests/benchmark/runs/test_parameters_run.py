@@ -17,10 +17,11 @@ from benchmark.cli.app import main
 from benchmark.errors import InputError
 from benchmark.files import load_scenario, load_session, load_tissue
 from benchmark.files.sessions.fit_table import FitTable
+from benchmark.identification import FittingError
 from benchmark.identification.parameters.layer_fit import LayerFit
 from benchmark.identification.parameters.session_problem import assembled
 from benchmark.response.differentiated_ramp import elastic_ramp
-from benchmark.runs import fit_run, fitted_session
+from benchmark.runs import fit_run, fitted_session, parameters_run
 from benchmark.runs.fit_run import FitRecord, FitRequest, fit_to_folder
 from benchmark.runs.fitted_session import FittedSession
 from benchmark.runs.parameters_run import ParameterWish, with_setup
@@ -176,6 +177,19 @@ def test_the_wider_interval_is_what_fits_with_another_set_up_say(session, tmp_pa
 
 def test_what_is_exact_leaves_the_scatter_of_the_trials_alone(session, tmp_path) -> None:
     assert plainly(session, tmp_path / "out")["with_setup_uncertain"] is None
+
+
+def test_a_trial_that_another_set_up_leaves_without_contact_ends_nothing(session, tmp_path, monkeypatch) -> None:
+    """A constant weight was fitted, and ended in a fault of the program as the set-up was moved."""
+
+    def none(trial):
+        raise FittingError(f"{trial.label}: no force rises")
+
+    trusting(session, "tool.edge_radius", THICKNESS, POISSON)
+    monkeypatch.setattr(parameters_run, "fit_trial", none)
+    found = plainly(session, tmp_path / "out")
+    assert found["with_setup_uncertain"] is None
+    assert any("was not worked out: trial" in text for text in found["warnings"])
 
 
 def test_two_tools_are_wrong_each_for_itself(session, tmp_path) -> None:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from benchmark.discovery.base.trials_problem import trial_refs
 from benchmark.discovery.trials.cycles import by_cycles
 from benchmark.discovery.trials.preparing import prepare
 from benchmark.errors import InputError
@@ -47,6 +48,18 @@ def test_each_press_of_a_long_record_is_a_trial_and_no_row_is_lost(session) -> N
     before = split.trials[3].earlier
     np.testing.assert_array_equal(before.force, rows[: before.force.size])
     assert before.time[-1] < split.trials[3].table.time[0] == made.trials[0].table.time[before.time.size]
+
+
+def test_a_press_is_simulated_after_those_before_it(session) -> None:
+    study = prepare(session(8), 100)
+    refs = trial_refs(study)
+    assert refs[0].motion.earlier == 0
+    motion, own = refs[5].motion, study.conditions[0]
+    before = motion.depth[: motion.earlier]
+    assert (np.diff(np.sign(before - 1.5e-3)) > 0).sum() == 5
+    assert before.max() == pytest.approx(3e-3, abs=1e-4)
+    np.testing.assert_array_equal(motion.read.depth, own.depth[5])
+    assert motion.time[motion.earlier - 1] < motion.time[motion.earlier]
 
 
 def test_presses_are_compared_and_what_one_leaves_to_the_next_stays_in_their_order(session) -> None:

@@ -88,13 +88,13 @@ def test_a_record_that_scatters_is_not_kept():
 def test_what_a_record_has_before_a_trial_comes_first_and_joins_it():
     whole = SimpleNamespace(table=SimpleNamespace(time=np.arange(20.0, 60.0), depth=np.arange(40.0)))
     few = np.array([20.0, 30.0, 40.0, 50.0])
-    earlier = np.array([[0.0, 1.0], [10.0, 2.0], [14.0, 3.0]])
+    earlier = np.array([[6.0, 1.0], [8.0, 1.5], [10.0, 2.0], [12.0, 2.5], [14.0, 3.0]])
     pieces = (SimpleNamespace(first=0, last=4),)
     raw = SimpleNamespace(trial=whole, time=few, depth=few, pieces=pieces, steadied=True, earlier=earlier)
     made = record(raw, [(0, np.array([0.0, 0.5, 1.0]))], 20.0)
-    assert made.earlier == 3
-    assert made.borders.tolist() == [-25.0, -15.0, -8.0, -5.0, 15.0, 35.0]
-    assert made.depth.tolist() == [1.0, 2.0, 3.0, *few]
+    assert made.earlier == 5
+    assert made.borders.tolist() == [-15.0, -13.0, -11.0, -9.0, -7.0, -5.0, 15.0, 35.0]
+    assert made.depth.tolist() == [1.0, 1.5, 2.0, 2.5, 3.0, *few]
     assert made.interval == 10.0
     assert made.own.borders.tolist() == [-5.0, 15.0, 35.0]
     assert made.own.depth.tolist() == few.tolist()

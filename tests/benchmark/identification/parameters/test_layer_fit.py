@@ -14,12 +14,14 @@ from benchmark.identification.parameters import layer_fit
 from benchmark.identification.parameters.free_parameters import value_of
 from benchmark.identification.parameters.layer_fit import SEARCH, USUAL_SCATTER, begun, fit_layers
 from benchmark.identification.parameters.layer_model import FitTrial
+from benchmark.identification.parameters.mixed_effects import renoised
 from benchmark.identification.parameters.profile_likelihood import profile
 from benchmark.identification.parameters.session_problem import _specimens
 from benchmark.identification.sheet_model import Relaxation, relaxed
 from benchmark.identification.trial_data import TrialData, rows_of
 from benchmark.identification.trial_features import contact_range
 from benchmark.response.least_squares import least_squares
+from benchmark.response.noise import whitener
 from tests.benchmark.identification.parameters.conftest import MODULI, PLAIN, TISSUE, TOOLS, TRUTH, zeros_of
 
 
@@ -42,16 +44,31 @@ def test_moduli_come_out_of_trials_with_hardly_any_noise(toy_fit) -> None:
     assert [found.value(k) for k in range(3)] == pytest.approx(list(TRUTH.values()), rel=1e-2)
 
 
-def test_a_fit_ends_at_the_same_answer_wherever_it_takes_the_touch_to_be(toy) -> None:
-    """A sharp beginning of the force leaves a corner of the likelihood at each row, and fits end in the next one."""
-    generator, noise = np.random.default_rng(6), 0.01
+def remembering(problem, noise=0.01):
+    """The problem with noise of a memory of 0.8, a share of each trial's peak."""
+    generator = np.random.default_rng(6)
 
-    def remembering(trial):
+    def noisy(trial):
         shocks = noise * 0.6 * np.ptp(trial.data.force) * generator.normal(size=trial.data.rows)
         return replace(trial, data=replace(trial.data, force=trial.data.force + lfilter([1.0], [1.0, -0.8], shocks)))
 
-    problem = toy(noise=0.0)
-    problem = replace(problem, trials=tuple(map(remembering, problem.trials)))
+    return replace(problem, trials=tuple(map(noisy, problem.trials)))
+
+
+def test_the_noises_memory_is_that_of_what_ordinary_least_squares_leave(toy) -> None:
+    """From a fit with memory it is found again, though noise of the depth has none."""
+    problem = remembering(toy(noise=0.0))
+    found = fit_layers(begun(problem, np.zeros(10), zeros_of(problem)))
+    plain = replace(found.model, white=tuple(whitener(one.count, 0.0) for one in found.model.trials))
+    ordinary = least_squares(plain, found.vector, found.fit.nuisance, search=SEARCH)
+    assert found.memory == pytest.approx(0.8, abs=0.03)
+    assert found.memory == pytest.approx(renoised(ordinary, problem.freedom)[1], abs=1e-5)
+    assert found.memory != pytest.approx(renoised(found.fit, problem.freedom)[1], abs=3e-5)
+
+
+def test_a_fit_ends_at_the_same_answer_wherever_it_takes_the_touch_to_be(toy) -> None:
+    """A sharp beginning of the force leaves a corner of the likelihood at each row, and fits end in the next one."""
+    problem = remembering(toy(noise=0.0))
     found = fit_layers(begun(problem, np.zeros(10), zeros_of(problem)))
     ends = []
     for touch in (-0.04, -0.02, 0.0, 0.02, 0.04):
