@@ -182,18 +182,18 @@ def test_markers_of_another_origin_or_a_mirrored_grid_are_told() -> None:
     assert mirrored.startswith("up: the markers' grid is mirrored")
 
 
-def held(seed, *, by_force=True, tau=2.0, share=0.4, limit=np.inf, plateau=False):
-    """A gel held for 10 s under a force, or at a depth under which its force decays; its depth scatters by 3 um."""
+def held(seed, *, by_force=True, tau=2.0, share=0.4, follows=0.0, limit=np.inf, plateau=False, scatter=3e-6):
+    """A gel held for 10 s under a force, or at a depth under which its force decays; its depth scatters (m)."""
     rng, time = np.random.default_rng([seed, 3]), np.arange(0.0, 16.0, 0.05)
     ramp = np.clip((time - 1.0) / 0.5, 0.0, 1.0) - np.clip((time - 11.5) / 0.5, 0.0, 1.0)
     slow = np.zeros(time.size)
     for row in range(1, time.size):
         slow[row] = slow[row - 1] + 0.05 / tau * (ramp[row] - slow[row - 1])
-    depth, force = (ramp + share * slow, ramp) if by_force else (ramp, ramp - share * slow)
+    depth, force = (ramp + share * slow, ramp + follows * slow) if by_force else (ramp, ramp - share * slow)
     if plateau:  # a foam that gives way at one force, pressed at one speed
         depth = np.clip((time - 1.0) / 10.0, 0.0, 1.0) - np.clip((time - 11.5) / 0.5, 0.0, 1.0)
         force = np.minimum(8.0 * depth, 0.8)
-    read = 4e-4 * depth + 3e-6 * rng.normal(size=time.size)
+    read = 4e-4 * depth + scatter * rng.normal(size=time.size)
     return TrialTable(time, read, 0.09 * np.minimum(force, limit) + 3e-4 * rng.normal(size=time.size), {}, "a.csv", {})
 
 
@@ -205,6 +205,8 @@ def held(seed, *, by_force=True, tau=2.0, share=0.4, limit=np.inf, plateau=False
         ({"by_force": False}, False),
         ({"by_force": False, "share": 0.0}, False),  # elastic: both stand, whichever was prescribed
         ({"share": 0.0}, False),
+        ({"share": 0.05, "scatter": 3e-8}, True),
+        ({"share": 0.05, "scatter": 3e-8, "follows": 0.008}, False),  # a stage creeps to its target, the force along
         ({"by_force": False, "share": 0.2, "limit": 0.6}, False),  # a sensor at its end
         ({"by_force": False, "plateau": True}, False),
     ],
